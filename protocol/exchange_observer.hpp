@@ -1,0 +1,48 @@
+// What happens in one exchange, told to whoever wants to know.
+//
+// The wrappers report each event of an exchange at the step at which it takes effect. They do not know who
+// listens: a test that keeps ghost state, a console that shows the traffic, nobody. An observer must not
+// touch the exchange. Events of the master are reported by the master's process, those of the slave by the
+// slave's.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace protocol {
+
+/// How a request ended for the kernel.
+enum class ExchangeOutcome : std::uint8_t {
+  ok,            ///< an answer was delivered
+  rejected,      ///< the slave answered that it will not execute it
+  not_executed,  ///< it is certain that the slave has not executed it and never will
+  unknown,       ///< given up: it may have been executed, or may yet be
+};
+
+class ExchangeObserver {
+ public:
+  virtual ~ExchangeObserver() = default;
+
+  /// SUBMIT: the kernel handed this request to the master wrapper; nothing has been written yet.
+  virtual void submitted(std::span<const std::byte> /*request*/) noexcept {}
+  /// PUBLISH: the state word says that there is a request.
+  virtual void published() noexcept {}
+  /// TAKE: the slave has been woken and turns to the request area.
+  virtual void taken() noexcept {}
+  /// EXEC: the slave hands these bytes to the emulator.
+  virtual void executed(std::span<const std::byte> /*request*/) noexcept {}
+  /// ANSWER: the slave is about to set the state word to "response"; these bytes are the answer.
+  virtual void answered(std::span<const std::byte> /*response*/) noexcept {}
+  /// DELIVER: the master returns these bytes to the kernel.
+  virtual void delivered(std::span<const std::byte> /*response*/) noexcept {}
+  /// OUTCOME: the request submitted last has ended for the kernel.
+  virtual void ended(ExchangeOutcome /*outcome*/) noexcept {}
+
+ protected:
+  ExchangeObserver() = default;
+  ExchangeObserver(const ExchangeObserver&) = default;
+  ExchangeObserver& operator=(const ExchangeObserver&) = default;
+};
+
+}  // namespace protocol
