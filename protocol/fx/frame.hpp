@@ -3,7 +3,8 @@
 //   STX  command  data...  ETX  SUM-high  SUM-low
 //
 // SUM is the low byte of the sum of all bytes from the command to ETX, as two upper-case hexadecimal digits.
-// ENQ, ACK and NAK are frames of one byte. Sources: the facts in protocol/README.md, "FX programming port".
+// ENQ, ACK and NAK are frames of one byte. README.md lists the choices
+// made where the sources are silent.
 //
 // Decoding takes bytes and returns a value; nothing here reads a clock or a port.
 #pragma once
@@ -32,6 +33,14 @@ inline constexpr std::size_t frame_bytes_max = 1 + 9 + 2 * data_bytes_max_wide +
 
 using DataBytes = boost::container::static_vector<std::byte, data_bytes_max_wide>;
 using FrameBytes = boost::container::static_vector<std::byte, frame_bytes_max>;
+
+/// The bytes as a span. They do not convert by themselves: Boost's iterators do not claim to be contiguous.
+[[nodiscard]] inline std::span<const std::byte> as_span(const DataBytes& bytes) noexcept {
+  return {bytes.data(), bytes.size()};
+}
+[[nodiscard]] inline std::span<const std::byte> as_span(const FrameBytes& bytes) noexcept {
+  return {bytes.data(), bytes.size()};
+}
 
 enum class Command : std::uint8_t {
   read,            ///< "0"
@@ -72,11 +81,16 @@ enum class FrameError : std::uint8_t {
 
 [[nodiscard]] std::string_view to_string(FrameError error) noexcept;
 
+/// The request as it stands, unchecked: what a PLC must refuse can be sent, too.
 [[nodiscard]] FrameBytes encode(const Request& request) noexcept;
+/// @param frame  one whole frame, STX to sum
+/// @return       the request; or the first defect, in the order in which FrameError lists them
 [[nodiscard]] tl::expected<Request, FrameError> decode_request(std::span<const std::byte> frame) noexcept;
 
 /// The answer to a read: STX, the bytes as digits, ETX, sum.
+/// @param data  1 to 254 bytes; what is beyond them is left out
 [[nodiscard]] FrameBytes encode_data_reply(std::span<const std::byte> data) noexcept;
+/// @return 1 to 254 bytes; or the first defect: every FrameError but unknown_command is possible
 [[nodiscard]] tl::expected<DataBytes, FrameError> decode_data_reply(
     std::span<const std::byte> frame) noexcept;
 
@@ -87,12 +101,12 @@ enum class FrameError : std::uint8_t {
 class FrameReceiver {
  public:
   enum class Event : std::uint8_t {
-    none,      ///< more bytes are needed
-    enq,       ///< ENQ
-    ack,       ///< ACK outside a frame
-    nak,       ///< NAK outside a frame
-    frame,     ///< frame() is complete, its sum not checked yet
-    overlong,  ///< a frame exceeded frame_bytes_max and was dropped
+    none,          ///< more bytes are needed
+    enq_received,  ///< ENQ
+    ack_received,  ///< ACK outside a frame
+    nak_received,  ///< NAK outside a frame
+    frame,         ///< frame() is complete, its sum not checked yet
+    overlong,      ///< a frame exceeded frame_bytes_max and was dropped
   };
 
   Event receive(std::byte byte) noexcept;
@@ -102,10 +116,14 @@ class FrameReceiver {
   /// @return whether there was one
   bool reset() noexcept;
   [[nodiscard]] bool in_frame() const noexcept;
+  /// Bytes that came outside a frame and meant nothing, since construction.
+  [[nodiscard]] std::size_t skipped_bytes_count() const noexcept;
 
  private:
   FrameBytes buffer_;
+  std::size_t skipped_bytes_count_ = 0;
   std::uint8_t bytes_after_etx_ = 0;
+  bool etx_seen_ = false;
   bool in_frame_ = false;
   bool complete_ = false;
 };
