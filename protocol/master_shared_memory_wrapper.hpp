@@ -1,0 +1,55 @@
+// The kernel's side of the exchange: writes requests, reads responses.
+//
+//   write         w1 request length   w2 request bytes   w3 state := request   w4 release the semaphore
+//   get_response  r1 wait until state = response         r2 response length    r3 response bytes
+//                 r4 state := idle
+//
+// Nothing joins an answer to the request it belongs to: after a time-out the next answer that appears is
+// taken for the answer to the next request (hazard H3).
+//
+// Not for two threads at once: the published design has no lock here (hazard H15).
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "protocol/shared_memory_wrapper.hpp"
+
+namespace protocol {
+
+class MasterSharedMemoryWrapper final : public SharedMemoryWrapper {
+ public:
+  MasterSharedMemoryWrapper(std::string segment_name, const PaperOptions& options,
+                            ExchangeObserver* observer = nullptr);
+
+  /// Writes one request and wakes the slave. Does not look at the state word: a request that the slave has
+  /// not taken yet is overwritten.
+  /// @return request_too_long: nothing was done; semaphore_full (K4 = one): the request stands in the area
+  /// and
+  ///         in the state word, but the slave was not woken for it
+  [[nodiscard]] tl::expected<void, SharedMemoryError> write(std::span<const std::byte> request) noexcept;
+
+  /// Waits for the response as K1 and K8 say, and copies it. What does not fit into `into` is lost.
+  /// @return bytes copied; 0 after the time-out, and when the response is empty
+  [[nodiscard]] tl::expected<std::size_t, SharedMemoryError> get_response(std::span<std::byte> into) noexcept;
+
+  /// K8: in place of PaperOptions::read_timeout, from the next get_response() on. Zero: one look, no wait.
+  void set_read_timeout(std::chrono::nanoseconds timeout) noexcept;
+
+ private:
+  tl::expected<void, SharedMemoryError> send(std::span<const std::byte> request) noexcept;
+  [[nodiscard]] bool wait_for_response() noexcept;
+  [[nodiscard]] bool poll_until_time_out() noexcept;
+  void end_request(ExchangeOutcome outcome) noexcept;
+
+  std::chrono::nanoseconds read_timeout_;
+  std::vector<std::byte> last_request_;  // kept for K8 = send_again only
+  bool request_is_open_ = false;
+};
+
+}  // namespace protocol
