@@ -42,13 +42,13 @@ class MasterSharedMemoryWrapper final : public SharedMemoryWrapper {
   void set_read_timeout(std::chrono::nanoseconds timeout) noexcept;
 
  private:
-  tl::expected<void, SharedMemoryError> send(std::span<const std::byte> request) noexcept;
+  bool send(std::span<const std::byte> request) noexcept;
   [[nodiscard]] bool wait_for_response() noexcept;
   [[nodiscard]] bool poll_until_time_out() noexcept;
   void end_request(ExchangeOutcome outcome) noexcept;
 
   std::chrono::nanoseconds read_timeout_;
-  std::vector<std::byte> last_request_;  // kept for K8 = send_again only
+  std::vector<std::byte> last_request_;  // for K8 = send_again
   bool request_is_open_ = false;
 };
 

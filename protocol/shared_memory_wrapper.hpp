@@ -39,6 +39,7 @@ inline constexpr std::uint32_t response_half = 0xFFFF'0000;
 inline constexpr std::uint32_t response_pending = 0x0001'0000;
 
 enum class SharedMemoryError : std::uint8_t {
+  not_open,           ///< the wrapper was never opened, or has been closed
   cannot_open,        ///< the system refused the segment or the semaphore
   segment_too_small,  ///< a segment of that name exists and has no room for the areas asked for
   request_too_long,   ///< more bytes than the request area holds
@@ -110,18 +111,21 @@ class SharedMemoryWrapper {
   bool wait_for_semaphore() noexcept;
   /// @return whether a token was there, and has been consumed
   bool try_consume_semaphore() noexcept;
-  /// Releases the semaphore whatever K4 says. Async-signal-safe.
-  void post_semaphore() noexcept;
+  /// Releases the semaphore whatever K4 says. Async-signal-safe as long as its count is below SEM_VALUE_MAX.
+  /// @return whether the semaphore was released
+  bool post_semaphore() noexcept;
 
   [[nodiscard]] ExchangeObserver& observer() const noexcept;
 
  private:
-  void open_or_throw();
+  tl::expected<void, SharedMemoryError> open_or_throw();
   void zero_segment() noexcept;
 
   [[nodiscard]] std::uint32_t load_word(std::size_t offset) const noexcept;
   void store_word(std::size_t offset, std::uint32_t value) noexcept;
-  void change_state_half(std::uint32_t cleared, std::uint32_t set) noexcept;
+  [[nodiscard]] std::byte load_byte(std::size_t offset) const noexcept;
+  void store_byte(std::size_t offset, std::byte value) noexcept;
+  void set_state(ExchangeState state, std::uint32_t cleared_bits, std::uint32_t set_bits) noexcept;
   [[nodiscard]] std::size_t checked_length(const AreaLayout& area) const noexcept;
   [[nodiscard]] std::uint8_t* at(std::size_t offset) const noexcept;
 

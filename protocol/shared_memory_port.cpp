@@ -1,0 +1,71 @@
+#include "protocol/shared_memory_port.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace protocol {
+
+namespace {
+
+PortError to_port_error(SharedMemoryError error) noexcept {
+  switch (error) {
+    case SharedMemoryError::not_open:
+      return PortError::not_open;
+    case SharedMemoryError::cannot_open:
+    case SharedMemoryError::segment_too_small:
+      return PortError::cannot_open;
+    case SharedMemoryError::request_too_long:
+      return PortError::message_too_long;
+    case SharedMemoryError::semaphore_full:
+      return PortError::refused;
+  }
+  return PortError::line_lost;
+}
+
+}  // namespace
+
+SharedMemoryPort::SharedMemoryPort(std::string segment_name, const PaperOptions& options,
+                                   ExchangeObserver* observer)
+    : wrapper_(std::move(segment_name), options, observer),
+      received_(wrapper_.layout().response.capacity_bytes) {}
+
+tl::expected<void, PortError> SharedMemoryPort::open() noexcept {
+  return wrapper_.open().map_error(to_port_error);
+}
+
+void SharedMemoryPort::close() noexcept {
+  purge();
+  wrapper_.close();
+}
+
+bool SharedMemoryPort::is_open() const noexcept { return wrapper_.is_open(); }
+
+tl::expected<std::size_t, PortError> SharedMemoryPort::write(std::span<const std::byte> bytes) noexcept {
+  if (!is_open()) return tl::unexpected(PortError::not_open);
+  if (bytes.empty()) return 0;
+  const auto written = wrapper_.write(bytes);
+  if (!written) return tl::unexpected(to_port_error(written.error()));
+  return bytes.size();
+}
+
+tl::expected<std::size_t, PortError> SharedMemoryPort::read(std::span<std::byte> into) noexcept {
+  if (!is_open()) return tl::unexpected(PortError::not_open);
+  if (into.empty()) return 0;
+  if (unread_.empty()) {
+    const auto length = wrapper_.get_response(received_);
+    if (!length) return tl::unexpected(to_port_error(length.error()));
+    unread_ = std::span(received_).first(*length);
+  }
+  const std::size_t count = std::min(into.size(), unread_.size());
+  std::ranges::copy(unread_.first(count), into.begin());
+  unread_ = unread_.subspan(count);
+  return count;
+}
+
+void SharedMemoryPort::set_timeouts(const PortTimeouts& timeouts) noexcept {
+  wrapper_.set_read_timeout(timeouts.read);
+}
+
+void SharedMemoryPort::purge() noexcept { unread_ = {}; }
+
+}  // namespace protocol

@@ -1,0 +1,18 @@
+#include "protocol/shared_memory_port_manager.hpp"
+
+#include <utility>
+
+#include "protocol/shared_memory_port.hpp"
+
+namespace protocol {
+
+SharedMemoryPortManager::SharedMemoryPortManager(const PaperOptions& options, ExchangeObserver* observer)
+    : options_(options), observer_(observer) {}
+
+tl::expected<std::shared_ptr<SerialPort>, PortError> SharedMemoryPortManager::port(std::string_view name) {
+  return ports_.find_or_make(name, [this](std::string segment_name) {
+    return std::make_shared<SharedMemoryPort>(std::move(segment_name), options_, observer_);
+  });
+}
+
+}  // namespace protocol
