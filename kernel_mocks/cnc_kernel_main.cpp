@@ -1,0 +1,227 @@
+// cnc-kernel: runs a part program against a PLC or a PLC emulator.
+//
+// Exit codes: 0 the program ran to its end; 1 it stopped, or this machine or the PLC refused it; 2 bad usage,
+// or a part program that cannot be read; 3 our own fault.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "kernel_mocks/console_report.hpp"
+#include "kernel_mocks/nc_parser.hpp"
+#include "kernel_mocks/paper_flags.hpp"
+#include "kernel_mocks/part_program_file.hpp"
+#include "kernel_mocks/part_program_runner.hpp"
+#include "protocol/posix_port_manager.hpp"
+#include "protocol/role_lock.hpp"
+#include "protocol/shared_memory_port_manager.hpp"
+#include "protocol/shared_memory_wrapper.hpp"
+
+namespace {
+
+using namespace kernel_mocks;
+
+constexpr int exit_ended = 0;
+constexpr int exit_stopped = 1;
+constexpr int exit_usage = 2;
+constexpr int exit_own_fault = 3;
+
+std::atomic<bool> stop_asked_for{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "it is set in a signal handler");
+
+extern "C" void ask_for_stop(int /*signal*/) { stop_asked_for.store(true); }
+
+struct Arguments {
+  std::string file;
+  std::string segment;
+  std::string device;
+  std::string model = "FX3U";
+  bool check_only = false;
+  bool block_skip = false;
+  RunnerOptions runner;
+  unsigned read_timeout_ms = 200;
+  unsigned fin_timeout_ms = 10'000;
+  unsigned poll_interval_ms = 5;
+  unsigned retries = 2;
+  unsigned baud_rate = 9600;
+  protocol::PaperOptions paper;
+};
+
+int complain(int exit_code, const std::string& message) {
+  std::fprintf(stderr, "cnc-kernel: %s\n", message.c_str());
+  return exit_code;
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("program", arguments.file, "Part program file (ISO-7bit)")->required();
+  auto* const segment =
+      app.add_option("--segment", arguments.segment, "Shared-memory segment of a PLC emulator");
+  app.add_option("--port", arguments.device, "Serial device of a PLC, e.g. /dev/ttyUSB0 or /dev/pts/3")
+      ->excludes(segment);
+  app.add_flag("--check", arguments.check_only, "Only read and check the part program; no PLC is needed");
+  app.add_option("--model", arguments.model, "PLC model: FX1S, FX1N, FX2N or FX3U")->capture_default_str();
+  app.add_flag("--skip-optional-blocks", arguments.block_skip,
+               "Operator's switch for blocks that begin with /");
+  app.add_flag("--optional-stop", arguments.runner.optional_stop, "Operator's switch for M1");
+  app.add_flag("--continue-at-m0", arguments.runner.continue_at_stop,
+               "Go on after M0 (and M1) as if cycle start had been pressed; without it the run ends there");
+  app.add_option("--read-timeout-ms", arguments.read_timeout_ms, "Longest wait for an answer of the PLC")
+      ->check(CLI::Range(1, 3'600'000))
+      ->capture_default_str();
+  app.add_option("--retries", arguments.retries, "Repetitions of a request without a good answer")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app.add_option("--fin-timeout-ms", arguments.fin_timeout_ms, "Longest wait for FIN")
+      ->check(CLI::Range(1, 86'400'000))
+      ->capture_default_str();
+  app.add_option("--poll-interval-ms", arguments.poll_interval_ms, "Pause between two looks for FIN")
+      ->check(CLI::Range(0, 60'000))
+      ->capture_default_str();
+  app.add_option("--baud", arguments.baud_rate, "Bits per second of the serial device")
+      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
+      ->capture_default_str();
+  add_paper_flags(app, arguments.paper);
+  app.footer(
+      "Exit codes: 0 ran to its end, 1 stopped or refused, 2 bad usage or unreadable program, 3 own fault.");
+}
+
+void stop_on_signals() {
+  struct sigaction action{};
+  action.sa_handler = ask_for_stop;
+  sigemptyset(&action.sa_mask);
+  // The second signal ends the process whatever it waits for.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int run_program(const Program& program, const Arguments& arguments, protocol::fx::Model model,
+                protocol::SerialPort& port, const std::string& where, const std::string& no_plc_hint) {
+  FxDriver driver{port,
+                  {.model = model,
+                   .answer_timeout = std::chrono::milliseconds{arguments.read_timeout_ms},
+                   .retries = arguments.retries}};
+  if (const auto connected = driver.connect(); !connected) {
+    const bool port_failed = connected.error() == FxDriverError::port_failed;
+    return complain(exit_stopped, fmt::format("no PLC on {}: {}. {}", where,
+                                              port_failed ? to_string(driver.last_port_error())
+                                                          : to_string(connected.error()),
+                                              no_plc_hint));
+  }
+
+  ConsoleReport report{driver};
+  LogicTask logic_task{driver,
+                       {.poll_interval = std::chrono::milliseconds{arguments.poll_interval_ms},
+                        .fin_timeout = std::chrono::milliseconds{arguments.fin_timeout_ms}},
+                       nullptr,
+                       &stop_asked_for};
+  PartProgramRunner runner{logic_task, arguments.runner, &report};
+  stop_on_signals();
+  fmt::print("{}: {} blocks, PLC {} on {}\n", arguments.file, program.blocks.size(),
+             protocol::fx::to_string(model), where);
+  report.show_outputs();
+  const auto start = std::chrono::steady_clock::now();
+  const RunResult result = runner.run(program);
+  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
+  const FxDriver::Counters& counters = driver.counters();
+  fmt::print("{} {:.2f} s: {} handshakes, {} motion blocks noted; {} requests, {} retries, {} time-outs\n",
+             result.outcome == RunOutcome::ended ? "program ended after" : "program stopped after",
+             duration.count(), report.function_count(), report.motion_count(), counters.requests,
+             counters.retries, counters.time_outs);
+  std::fflush(stdout);
+  switch (result.outcome) {
+    case RunOutcome::ended:
+      return exit_ended;
+    case RunOutcome::stopped:
+      return complain(exit_stopped,
+                      fmt::format("{}: {}; nobody is there to press cycle start, so the run ends "
+                                  "here. --continue-at-m0 goes on",
+                                  arguments.file, result.message));
+    case RunOutcome::refused:
+    case RunOutcome::failed:
+      return complain(exit_stopped, fmt::format("{}: {}", arguments.file, result.message));
+  }
+  return exit_own_fault;
+}
+
+int run_on_segment(const Program& program, Arguments arguments, protocol::fx::Model model) {
+  const std::string start_hint = fmt::format("Start one: plc-emulator --segment {}", arguments.segment);
+  const std::string where = fmt::format("segment '{}'", arguments.segment);
+  protocol::RoleLock role{arguments.segment, protocol::Role::kernel};
+  if (const auto locked = role.try_lock(); !locked) {
+    return complain(exit_stopped, locked.error() == protocol::RoleLockError::held_by_other
+                                      ? fmt::format("another kernel is running on {}", where)
+                                      : fmt::format("{}: {}", where, to_string(locked.error())));
+  }
+  // Opening would create what is missing, and leave behind a segment that nobody serves.
+  if (!protocol::SharedMemoryWrapper::exists(arguments.segment)) {
+    return complain(exit_stopped,
+                    fmt::format("no PLC on {}: there is no such segment. {}", where, start_hint));
+  }
+  arguments.paper.read_timeout = std::chrono::milliseconds{arguments.read_timeout_ms};
+  protocol::SharedMemoryPortManager ports{arguments.paper};
+  const auto port = ports.port(arguments.segment);
+  if (!port) return complain(exit_stopped, fmt::format("{}: {}", where, to_string(port.error())));
+  return run_program(
+      program, arguments, model, **port, where,
+      fmt::format("If one is running, it was started with other options or hangs. {}", start_hint));
+}
+
+int run_on_device(const Program& program, const Arguments& arguments, protocol::fx::Model model) {
+  protocol::PosixPortManager ports{{.baud_rate = arguments.baud_rate}};
+  const auto port = ports.port(arguments.device);
+  if (!port) return complain(exit_stopped, fmt::format("{}: {}", arguments.device, to_string(port.error())));
+  return run_program(program, arguments, model, **port, arguments.device,
+                     "Check the cable and the device path, or start an emulator: plc-emulator --pty");
+}
+
+int checked_main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Runs a part program against a PLC or a PLC emulator."};
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_ended : exit_usage;
+  }
+  const auto model = protocol::fx::parse_model(arguments.model);
+  if (!model) {
+    return complain(exit_usage,
+                    fmt::format("--model {}: not one of FX1S, FX1N, FX2N, FX3U", arguments.model));
+  }
+  if (!arguments.check_only && arguments.segment.empty() && arguments.device.empty()) {
+    return complain(exit_usage,
+                    "where is the PLC? --segment NAME or --port DEVICE (or --check to only read)");
+  }
+
+  const auto text = read_program_file(arguments.file);
+  if (!text) return complain(exit_usage, fmt::format("{} {}", arguments.file, to_string(text.error())));
+  const auto program = parse_program(*text, {.skip_optional_blocks = arguments.block_skip});
+  if (!program)
+    return complain(exit_usage, fmt::format("{}: {}", arguments.file, to_string(program.error())));
+  if (const auto checked = check_for_machine(*program); !checked) {
+    return complain(exit_stopped, fmt::format("{}: {}", arguments.file, to_string(checked.error())));
+  }
+  if (arguments.check_only) {
+    fmt::print("{}: {} blocks, can run on this machine\n", arguments.file, program->blocks.size());
+    return exit_ended;
+  }
+  return arguments.segment.empty() ? run_on_device(*program, arguments, *model)
+                                   : run_on_segment(*program, arguments, *model);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return checked_main(argc, argv);
+  } catch (const std::exception& error) {
+    return complain(exit_own_fault, fmt::format("internal error: {}", error.what()));
+  }
+}

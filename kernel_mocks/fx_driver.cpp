@@ -1,0 +1,225 @@
+#include "kernel_mocks/fx_driver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace kernel_mocks {
+namespace {
+
+using protocol::fx::AddressSpace;
+using protocol::fx::Command;
+using protocol::fx::Device;
+
+struct Place {
+  std::uint16_t address = 0;
+  AddressSpace space = AddressSpace::legacy;
+};
+
+/// Legacy commands wherever they reach: every FX knows them.
+template <typename Lookup>
+std::optional<Place> place_of(Device device, protocol::fx::Model model, Lookup lookup) noexcept {
+  for (const AddressSpace space : {AddressSpace::legacy, AddressSpace::wide}) {
+    if (const auto address = lookup(device, model, space)) return Place{*address, space};
+  }
+  return std::nullopt;
+}
+
+std::size_t bytes_max(AddressSpace space) noexcept {
+  return space == AddressSpace::legacy ? protocol::fx::data_bytes_max_legacy
+                                       : protocol::fx::data_bytes_max_wide;
+}
+
+}  // namespace
+
+std::string_view to_string(FxDriverError error) noexcept {
+  switch (error) {
+    case FxDriverError::not_reachable:
+      return "the PLC model has no such device";
+    case FxDriverError::bad_length:
+      return "more bytes than one request carries";
+    case FxDriverError::port_failed:
+      return "the port failed";
+    case FxDriverError::write_timed_out:
+      return "the port did not take the request in time";
+    case FxDriverError::no_answer:
+      return "the PLC does not answer";
+    case FxDriverError::truncated_answer:
+      return "the answer of the PLC was cut off";
+    case FxDriverError::nak:
+      return "the PLC refused the request (NAK)";
+    case FxDriverError::bad_frame:
+      return "the answer of the PLC is not a frame";
+    case FxDriverError::bad_checksum:
+      return "the answer of the PLC has a wrong sum";
+    case FxDriverError::wrong_length:
+      return "the answer of the PLC has a wrong length";
+    case FxDriverError::unexpected_answer:
+      return "the answer of the PLC is of another kind than the request wants";
+    case FxDriverError::surplus_bytes:
+      return "more than one answer came to one request";
+  }
+  return "unknown error";
+}
+
+FxDriver::FxDriver(protocol::SerialPort& port, const FxDriverOptions& options)
+    : port_{port}, options_{options} {}
+
+tl::expected<void, FxDriverError> FxDriver::connect() noexcept {
+  if (!port_.is_open()) {
+    if (const auto opened = port_.open(); !opened) return port_failed(opened.error());
+  }
+  port_.set_timeouts({.read = options_.answer_timeout, .write = options_.answer_timeout});
+  line_is_clean_ = false;
+  ++counters_.requests;
+  constexpr std::array frame{protocol::fx::enq};
+  FxDriverError last = FxDriverError::no_answer;
+  for (unsigned attempt = 0; attempt < options_.enq_tries; ++attempt) {
+    if (attempt > 0) ++counters_.retries;
+    const auto answered = try_once(frame, {});
+    if (answered) return {};
+    last = answered.error();
+    if (last == FxDriverError::port_failed) break;
+  }
+  return tl::unexpected{last};
+}
+
+tl::expected<void, FxDriverError> FxDriver::read_bytes(Device first, std::span<std::byte> into) noexcept {
+  const auto place = place_of(first, options_.model, protocol::fx::byte_address);
+  if (!place) return tl::unexpected{FxDriverError::not_reachable};
+  if (into.empty() || into.size() > bytes_max(place->space)) return tl::unexpected{FxDriverError::bad_length};
+  return request({.command = place->space == AddressSpace::wide ? Command::read_wide : Command::read,
+                  .address = place->address,
+                  .count_bytes = static_cast<std::uint8_t>(into.size()),
+                  .data = {}},
+                 into);
+}
+
+tl::expected<void, FxDriverError> FxDriver::write_bytes(Device first,
+                                                        std::span<const std::byte> bytes) noexcept {
+  const auto place = place_of(first, options_.model, protocol::fx::byte_address);
+  if (!place) return tl::unexpected{FxDriverError::not_reachable};
+  if (bytes.empty() || bytes.size() > bytes_max(place->space)) {
+    return tl::unexpected{FxDriverError::bad_length};
+  }
+  return request({.command = place->space == AddressSpace::wide ? Command::write_wide : Command::write,
+                  .address = place->address,
+                  .count_bytes = static_cast<std::uint8_t>(bytes.size()),
+                  .data = protocol::fx::DataBytes(bytes.begin(), bytes.end())},
+                 {});
+}
+
+tl::expected<void, FxDriverError> FxDriver::force(Device device, bool on) noexcept {
+  const auto place = place_of(device, options_.model, protocol::fx::bit_number);
+  if (!place) return tl::unexpected{FxDriverError::not_reachable};
+  const bool wide = place->space == AddressSpace::wide;
+  const Command command = on ? (wide ? Command::force_on_wide : Command::force_on)
+                             : (wide ? Command::force_off_wide : Command::force_off);
+  return request({.command = command, .address = place->address, .count_bytes = 0, .data = {}}, {});
+}
+
+tl::expected<std::uint16_t, FxDriverError> FxDriver::read_word(Device word) noexcept {
+  std::array<std::byte, 2> bytes{};
+  if (const auto done = read_bytes(word, bytes); !done) return tl::unexpected{done.error()};
+  return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[0]) | std::to_integer<unsigned>(bytes[1])
+                                                                              << 8U);
+}
+
+tl::expected<void, FxDriverError> FxDriver::write_words(Device first,
+                                                        std::span<const std::uint16_t> words) noexcept {
+  std::array<std::byte, protocol::fx::data_bytes_max_wide> bytes{};
+  if (words.size() * 2 > bytes.size()) return tl::unexpected{FxDriverError::bad_length};
+  for (std::size_t index = 0; index < words.size(); ++index) {
+    bytes[2 * index] = static_cast<std::byte>(words[index] & 0xFFU);
+    bytes[2 * index + 1] = static_cast<std::byte>(words[index] >> 8U);
+  }
+  return write_bytes(first, std::span{bytes}.first(words.size() * 2));
+}
+
+tl::expected<void, FxDriverError> FxDriver::request(const protocol::fx::Request& request,
+                                                    std::span<std::byte> answer) noexcept {
+  ++counters_.requests;
+  const protocol::fx::FrameBytes frame = encode(request);
+  for (unsigned attempt = 0;; ++attempt) {
+    if (attempt > 0) ++counters_.retries;
+    const auto done = try_once({frame.data(), frame.size()}, answer);
+    if (done) return {};
+    // A port that failed is beyond what sending again can mend.
+    if (done.error() == FxDriverError::port_failed || attempt == options_.retries) return done;
+  }
+}
+
+tl::expected<void, FxDriverError> FxDriver::try_once(std::span<const std::byte> frame,
+                                                     std::span<std::byte> answer) noexcept {
+  if (!line_is_clean_) port_.purge();
+  line_is_clean_ = false;
+  if (const auto sent = send(frame); !sent) return sent;
+  const auto event = receive();
+  if (!event) return tl::unexpected{event.error()};
+  switch (*event) {
+    case Event::ack_received:
+      if (!answer.empty()) return tl::unexpected{FxDriverError::unexpected_answer};
+      break;
+    case Event::frame:
+      if (answer.empty()) return tl::unexpected{FxDriverError::unexpected_answer};
+      if (const auto taken = take_data(answer); !taken) return taken;
+      break;
+    case Event::nak_received:
+      return tl::unexpected{FxDriverError::nak};
+    case Event::overlong:
+      return tl::unexpected{FxDriverError::bad_frame};
+    case Event::enq_received:
+    case Event::none:
+      return tl::unexpected{FxDriverError::unexpected_answer};
+  }
+  line_is_clean_ = true;
+  return {};
+}
+
+tl::expected<void, FxDriverError> FxDriver::send(std::span<const std::byte> frame) noexcept {
+  const auto written = port_.write(frame);
+  if (!written) return port_failed(written.error());
+  if (*written != frame.size()) {
+    ++counters_.time_outs;
+    return tl::unexpected{FxDriverError::write_timed_out};
+  }
+  return {};
+}
+
+tl::expected<FxDriver::Event, FxDriverError> FxDriver::receive() noexcept {
+  // A byte stream that never makes an answer must not hold the caller longer than silence would.
+  const auto deadline = std::chrono::steady_clock::now() + options_.answer_timeout;
+  std::array<std::byte, protocol::fx::frame_bytes_max> buffer{};
+  receiver_.reset();
+  do {
+    const auto count = port_.read(buffer);
+    if (!count) return port_failed(count.error());
+    if (*count == 0) break;
+    for (std::size_t index = 0; index < *count; ++index) {
+      const Event event = receiver_.receive(buffer[index]);
+      if (event == Event::none) continue;
+      if (index + 1 != *count) return tl::unexpected{FxDriverError::surplus_bytes};
+      return event;
+    }
+  } while (std::chrono::steady_clock::now() < deadline);
+  ++counters_.time_outs;
+  return tl::unexpected{receiver_.in_frame() ? FxDriverError::truncated_answer : FxDriverError::no_answer};
+}
+
+tl::expected<void, FxDriverError> FxDriver::take_data(std::span<std::byte> answer) const noexcept {
+  const auto data = protocol::fx::decode_data_reply(receiver_.frame());
+  if (!data) {
+    return tl::unexpected{data.error() == protocol::fx::FrameError::bad_checksum ? FxDriverError::bad_checksum
+                                                                                 : FxDriverError::bad_frame};
+  }
+  if (data->size() != answer.size()) return tl::unexpected{FxDriverError::wrong_length};
+  std::ranges::copy(*data, answer.begin());
+  return {};
+}
+
+tl::unexpected<FxDriverError> FxDriver::port_failed(protocol::PortError error) noexcept {
+  last_port_error_ = error;
+  return tl::unexpected{FxDriverError::port_failed};
+}
+
+}  // namespace kernel_mocks

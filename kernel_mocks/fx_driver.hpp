@@ -1,0 +1,109 @@
+// The computer's side of the FX programming port, over any SerialPort.
+//
+// Every call is one request and its answer, repeated when the answer is missing or bad. Writes and forces set
+// values, so that doing them twice is harmless; that is why they may be repeated at all.
+//
+// After a failed exchange the line may still hold, or later bring, an answer that belongs to nobody: it is
+// purged before the next request. An answer that arrives after that purge cannot be told from the right one:
+// the protocol numbers nothing. What catches most of them: the kind (data or ACK) and the length of each
+// answer are checked.
+//
+// Not for two threads at once, as the line itself is not.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+#include "protocol/fx/address_map.hpp"
+#include "protocol/fx/frame.hpp"
+#include "protocol/serial_port.hpp"
+
+namespace kernel_mocks {
+
+enum class FxDriverError : std::uint8_t {
+  not_reachable,      ///< the model has no such device, or no command of this protocol shows it
+  bad_length,         ///< no bytes, or more than one request carries
+  port_failed,        ///< the port reported an error: last_port_error()
+  write_timed_out,    ///< the carrier did not take the whole request in time
+  no_answer,          ///< nothing came before the time-out
+  truncated_answer,   ///< a frame began and did not end before the time-out
+  nak,                ///< the PLC refused
+  bad_frame,          ///< an answer that is no frame: too long, wrong digits
+  bad_checksum,       ///< the sum of the answer is wrong
+  wrong_length,       ///< an answer with more or fewer bytes than asked for
+  unexpected_answer,  ///< data where ACK belongs, ACK where data belong, or ENQ
+  surplus_bytes,      ///< something followed the answer at once: a doubled answer
+};
+inline constexpr std::size_t fx_driver_error_count = 12;
+
+[[nodiscard]] std::string_view to_string(FxDriverError error) noexcept;
+
+struct FxDriverOptions {
+  protocol::fx::Model model = protocol::fx::Model::fx3u;
+  /// From the request to the end of its answer. The longest answer lasts 533 ms at 9600 bit/s.
+  std::chrono::nanoseconds answer_timeout = std::chrono::milliseconds{200};
+  /// Repetitions of a request after its first failure.
+  unsigned retries = 2;
+  /// Tries of ENQ; three unanswered ones mean that there is no PLC.
+  unsigned enq_tries = 3;
+};
+
+class FxDriver {
+ public:
+  struct Counters {
+    std::uint64_t requests = 0;   ///< asked for by the caller
+    std::uint64_t retries = 0;    ///< frames sent again, ENQ included
+    std::uint64_t time_outs = 0;  ///< answers that did not come, or not to their end
+  };
+
+  /// @param port  must outlive the driver; opened by connect()
+  FxDriver(protocol::SerialPort& port, const FxDriverOptions& options);
+
+  /// Opens the port if need be, and asks with ENQ whether somebody is there.
+  [[nodiscard]] tl::expected<void, FxDriverError> connect() noexcept;
+
+  /// Reads consecutive bytes: of a bit device eight bits each, beginning with the byte that holds `first`.
+  /// @param into  1 to 64 bytes (254 where only the wide commands reach)
+  [[nodiscard]] tl::expected<void, FxDriverError> read_bytes(protocol::fx::Device first,
+                                                             std::span<std::byte> into) noexcept;
+  /// Writes consecutive bytes with one request.
+  [[nodiscard]] tl::expected<void, FxDriverError> write_bytes(protocol::fx::Device first,
+                                                              std::span<const std::byte> bytes) noexcept;
+  /// Sets or resets one bit device.
+  [[nodiscard]] tl::expected<void, FxDriverError> force(protocol::fx::Device device, bool on) noexcept;
+
+  [[nodiscard]] tl::expected<std::uint16_t, FxDriverError> read_word(protocol::fx::Device word) noexcept;
+  /// Writes consecutive words with one request.
+  [[nodiscard]] tl::expected<void, FxDriverError> write_words(protocol::fx::Device first,
+                                                              std::span<const std::uint16_t> words) noexcept;
+
+  [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+  /// What the port said when port_failed was returned last.
+  [[nodiscard]] protocol::PortError last_port_error() const noexcept { return last_port_error_; }
+
+ private:
+  using Event = protocol::fx::FrameReceiver::Event;
+
+  tl::expected<void, FxDriverError> request(const protocol::fx::Request& request,
+                                            std::span<std::byte> answer) noexcept;
+  tl::expected<void, FxDriverError> try_once(std::span<const std::byte> frame,
+                                             std::span<std::byte> answer) noexcept;
+  tl::expected<void, FxDriverError> send(std::span<const std::byte> frame) noexcept;
+  tl::expected<Event, FxDriverError> receive() noexcept;
+  tl::expected<void, FxDriverError> take_data(std::span<std::byte> answer) const noexcept;
+  tl::unexpected<FxDriverError> port_failed(protocol::PortError error) noexcept;
+
+  protocol::SerialPort& port_;
+  FxDriverOptions options_;
+  protocol::fx::FrameReceiver receiver_;
+  Counters counters_;
+  protocol::PortError last_port_error_ = protocol::PortError::not_open;
+  bool line_is_clean_ = true;
+};
+
+}  // namespace kernel_mocks

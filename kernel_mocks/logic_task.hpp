@@ -1,0 +1,130 @@
+// The kernel's logic task: gives auxiliary functions to the PLC and waits until it has done them.
+//
+// One function request, one handshake of levels (fact base: Fanuc's M, S, T interface):
+//
+//   1. FIN is waited for to be off: a FIN that is still on belongs to something else.
+//   2. Code, speed and tool number are written with one request.
+//   3. The strobes of the request rise together, by one write of the byte that holds them. Bits forced one by
+//      one could be seen by different scans, and the PLC could answer FIN to the first of them alone.
+//   4. FIN is polled for. An alarm or a lost emergency-stop chain ends the wait.
+//   5. The strobes fall; FIN is waited for to be off.
+//
+// Speed and tool number keep their value between requests, the PLC heeds them when their strobe rises; the
+// M code means nothing without its strobe.
+//
+// A FIN shorter than the poll interval may be missed; the fin_timeout then ends the wait.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include <tl/expected.hpp>
+
+#include "kernel_mocks/block_plan.hpp"
+#include "kernel_mocks/fx_driver.hpp"
+
+namespace kernel_mocks {
+
+enum class FunctionKind : std::uint8_t { m, s, t };
+
+/// Told of every function of every request.
+class LogicTaskObserver {
+ public:
+  virtual ~LogicTaskObserver() = default;
+
+  /// The PLC has taken the write that raises the strobe of this function.
+  virtual void strobe_raised(FunctionKind /*kind*/, std::uint16_t /*number*/) noexcept {}
+  /// FIN was seen for this function.
+  /// @param duration  from the strobe to FIN
+  virtual void finished(FunctionKind /*kind*/, std::uint16_t /*number*/,
+                        std::chrono::nanoseconds /*duration*/) noexcept {}
+
+ protected:
+  LogicTaskObserver() = default;
+  LogicTaskObserver(const LogicTaskObserver&) = default;
+  LogicTaskObserver& operator=(const LogicTaskObserver&) = default;
+};
+
+enum class LogicFault : std::uint8_t {
+  link_lost,       ///< an exchange with the PLC failed
+  alarm,           ///< the PLC reports an alarm
+  emergency_stop,  ///< the emergency-stop chain is open
+  not_ready,       ///< the PLC does not allow a cycle start
+  fin_missing,     ///< no FIN within the time-out
+  fin_stuck,       ///< FIN did not go off within the time-out
+  interrupted,     ///< somebody asked for a stop
+};
+
+struct LogicFailure {
+  LogicFault fault = LogicFault::link_lost;
+  /// For alarm: the PLC's alarm number; 0 when it could not be read.
+  std::uint16_t alarm_number = 0;
+  /// For link_lost.
+  FxDriverError link = FxDriverError::no_answer;
+  /// Since the wait began.
+  std::chrono::nanoseconds after{0};
+};
+
+/// "PLC alarm 17", "no FIN from the PLC within 10.0 s"
+[[nodiscard]] std::string to_string(const LogicFailure& failure);
+
+struct LogicTaskOptions {
+  std::chrono::nanoseconds poll_interval = std::chrono::milliseconds{5};
+  /// Longest wait for FIN to come, and for it to go.
+  std::chrono::nanoseconds fin_timeout = std::chrono::seconds{10};
+  /// Longest wait at the program start for the PLC to allow it.
+  std::chrono::nanoseconds ready_timeout = std::chrono::seconds{2};
+  /// Length of the reset signal: longer than a scan, so that no PLC misses it.
+  std::chrono::nanoseconds reset_pulse = std::chrono::milliseconds{50};
+};
+
+class LogicTask {
+ public:
+  /// @param driver    connected; must outlive the task
+  /// @param observer  may be nullptr
+  /// @param stop      may be nullptr; when it becomes true, every wait ends with LogicFault::interrupted
+  LogicTask(FxDriver& driver, const LogicTaskOptions& options, LogicTaskObserver* observer = nullptr,
+            const std::atomic<bool>* stop = nullptr);
+
+  /// Takes back what a former kernel may have left on, resets the PLC, and waits until it is ready: no alarm,
+  /// emergency-stop chain closed, cycle start enabled. Then "program running" is on.
+  [[nodiscard]] tl::expected<void, LogicFailure> begin_program();
+
+  /// Steps 1 to 3. The request before must have been acknowledged.
+  [[nodiscard]] tl::expected<void, LogicFailure> raise(const FunctionRequest& request);
+  /// Steps 4 and 5 of the request raised last.
+  /// @return time from the strobe to FIN
+  [[nodiscard]] tl::expected<std::chrono::nanoseconds, LogicFailure> acknowledge();
+
+  [[nodiscard]] tl::expected<void, LogicFailure> end_program();
+
+  /// Strobes off, a pulse on the reset signal, "program running" off. Gives up at the first failed exchange:
+  /// a PLC that cannot be reached cannot be reset.
+  tl::expected<void, LogicFailure> reset();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  tl::expected<void, LogicFailure> set_strobes(std::byte strobes);
+  tl::expected<void, LogicFailure> wait_until_ready();
+  tl::expected<void, LogicFailure> wait_for_fin(bool on, Clock::time_point since);
+  tl::expected<std::byte, LogicFailure> read_status();
+  LogicFailure alarm_failure(Clock::time_point since);
+  [[nodiscard]] bool stop_asked_for() const noexcept;
+  template <typename Notify>
+  void tell(const FunctionRequest& request, Notify notify) const;
+
+  FxDriver& driver_;
+  LogicTaskOptions options_;
+  LogicTaskObserver* observer_;
+  const std::atomic<bool>* stop_;
+  FunctionRequest raised_;
+  Clock::time_point raised_at_;
+  /// Last values of D100 to D102.
+  std::array<std::uint16_t, 3> values_{};
+};
+
+}  // namespace kernel_mocks

@@ -1,0 +1,55 @@
+#include "kernel_mocks/paper_flags.hpp"
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace kernel_mocks {
+namespace {
+
+template <typename Value>
+void add_choice(CLI::App& app, const std::string& name, Value& value,
+                const std::map<std::string, Value>& choices, const std::string& help) {
+  app.add_option(name, value, help)
+      ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case))
+      ->group("Handoff over the segment (must match the emulator's)");
+}
+
+}  // namespace
+
+void add_paper_flags(CLI::App& app, protocol::PaperOptions& options) {
+  using Options = protocol::PaperOptions;
+  add_choice<Options::ReadWait>(
+      app, "--read-wait", options.read_wait,
+      {{"poll", Options::ReadWait::poll}, {"immediately", Options::ReadWait::immediately}},
+      "K1: does reading wait for the answer? (default poll)");
+  add_choice<Options::StateCoding>(
+      app, "--state-coding", options.state_coding,
+      {{"enumeration", Options::StateCoding::enumeration}, {"halves", Options::StateCoding::halves}},
+      "K2: coding of the state word (default enumeration)");
+  add_choice<Options::SemaphoreMaximum>(
+      app, "--semaphore-maximum", options.semaphore_maximum,
+      {{"large", Options::SemaphoreMaximum::large}, {"one", Options::SemaphoreMaximum::one}},
+      "K4: maximum count of the semaphore (default large)");
+  add_choice<Options::AreaOrder>(
+      app, "--area-order", options.area_order,
+      {{"length-first", Options::AreaOrder::length_first}, {"bytes-first", Options::AreaOrder::bytes_first}},
+      "K6: what of an area is written first (default length-first)");
+  add_choice<Options::StateTakenBack>(
+      app, "--state-taken-back", options.state_taken_back,
+      {{"by-master", Options::StateTakenBack::by_master}, {"by-nobody", Options::StateTakenBack::by_nobody}},
+      "K7: who takes the state back from \"response\" (default by-master)");
+  add_choice<Options::OnTimeOut>(app, "--on-time-out", options.on_time_out,
+                                 {{"give-up", Options::OnTimeOut::give_up},
+                                  {"wait-for-ever", Options::OnTimeOut::wait_for_ever},
+                                  {"send-again", Options::OnTimeOut::send_again}},
+                                 "K8: what follows when no answer comes (default give-up)");
+  add_choice<Options::LengthCheck>(app, "--length-check", options.length_check,
+                                   {{"none", Options::LengthCheck::none},
+                                    {"check-and-load-again", Options::LengthCheck::check_and_load_again},
+                                    {"load-once", Options::LengthCheck::load_once}},
+                                   "K9: check of the length found in an area (default none)");
+}
+
+}  // namespace kernel_mocks
