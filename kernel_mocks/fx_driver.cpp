@@ -198,7 +198,9 @@ tl::expected<FxDriver::Event, FxDriverError> FxDriver::receive() noexcept {
     for (std::size_t index = 0; index < *count; ++index) {
       const Event event = receiver_.receive(buffer[index]);
       if (event == Event::none) continue;
-      if (index + 1 != *count) return tl::unexpected{FxDriverError::surplus_bytes};
+      // What follows a frame that was dropped as too long is the rest of it.
+      if (event != Event::overlong && index + 1 != *count)
+        return tl::unexpected{FxDriverError::surplus_bytes};
       return event;
     }
   } while (std::chrono::steady_clock::now() < deadline);
