@@ -51,9 +51,10 @@ tl::expected<BlockPlan, NcError> plan_block(const Block& block) {
     if (function == nullptr) {
       return tl::unexpected{NcError{NcFault::m_code_not_in_machine_table, block.line, to_string(word)}};
     }
-    functions.push_back(function);
+    // Behind those of the same rank: as written.
+    functions.insert(std::ranges::upper_bound(functions, function->rank, {}, &MachineFunction::rank),
+                     function);
   }
-  std::ranges::stable_sort(functions, {}, &MachineFunction::rank);
 
   BlockPlan plan;
   plan.has_motion = std::ranges::any_of(block.words, is_motion_word);

@@ -6,9 +6,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
-#include <memory>
 #include <string>
+#include <thread>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -33,9 +34,6 @@ constexpr int exit_usage = 2;
 constexpr int exit_own_fault = 3;
 
 std::atomic<bool> stop_asked_for{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "it is set in a signal handler");
-
-extern "C" void ask_for_stop(int /*signal*/) { stop_asked_for.store(true); }
 
 struct Arguments {
   std::string file;
@@ -91,14 +89,22 @@ void add_options(CLI::App& app, Arguments& arguments) {
       "Exit codes: 0 ran to its end, 1 stopped or refused, 2 bad usage or unreadable program, 3 own fault.");
 }
 
+/// SIGINT and SIGTERM ask for a stop; the second one ends the process whatever it waits for. A thread waits
+/// for them, so that they interrupt no exchange with the PLC in mid-answer. To be called before any other
+/// thread is started.
 void stop_on_signals() {
-  struct sigaction action{};
-  action.sa_handler = ask_for_stop;
-  sigemptyset(&action.sa_mask);
-  // The second signal ends the process whatever it waits for.
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  static sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread{[] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    stop_asked_for.store(true);
+    sigwait(&signals, &signal);
+    std::_Exit(exit_stopped);
+  }}.detach();
 }
 
 int run_program(const Program& program, const Arguments& arguments, protocol::fx::Model model,
@@ -122,7 +128,6 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
                        nullptr,
                        &stop_asked_for};
   PartProgramRunner runner{logic_task, arguments.runner, &report};
-  stop_on_signals();
   fmt::print("{}: {} blocks, PLC {} on {}\n", arguments.file, program.blocks.size(),
              protocol::fx::to_string(model), where);
   report.show_outputs();
@@ -200,6 +205,7 @@ int checked_main(int argc, char** argv) {
                     "where is the PLC? --segment NAME or --port DEVICE (or --check to only read)");
   }
 
+  stop_on_signals();
   const auto text = read_program_file(arguments.file);
   if (!text) return complain(exit_usage, fmt::format("{} {}", arguments.file, to_string(text.error())));
   const auto program = parse_program(*text, {.skip_optional_blocks = arguments.block_skip});

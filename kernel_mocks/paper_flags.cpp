@@ -11,8 +11,14 @@ namespace {
 template <typename Value>
 void add_choice(CLI::App& app, const std::string& name, Value& value,
                 const std::map<std::string, Value>& choices, const std::string& help) {
+  // The library would show the enumeration's numbers as characters.
+  std::string names;
+  for (const auto& [text, unused] : choices) names += (names.empty() ? "" : "|") + text;
+  CLI::CheckedTransformer transformer{choices, CLI::ignore_case};
+  transformer.description(names);
   app.add_option(name, value, help)
-      ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case))
+      ->transform(transformer)
+      ->type_name("CHOICE")
       ->group("Handoff over the segment (must match the emulator's)");
 }
 

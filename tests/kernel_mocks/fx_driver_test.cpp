@@ -269,7 +269,7 @@ TEST_F(FxDriverTest, skips_noise_in_front_of_an_answer) {
 
 TEST_F(FxDriverTest, noise_without_an_answer_is_a_time_out_in_the_end) {
   options = {.answer_timeout = 1ms, .retries = 0};
-  port.replies = {{std::vector<Bytes>(1'000'000, bytes_of("?")), {}}};
+  port.endless_noise = std::byte{'?'};
   FxDriver fx = driver();
   EXPECT_EQ(fx.read_bytes(d123, four).error(), FxDriverError::no_answer);
   EXPECT_EQ(fx.counters().time_outs, 1U);

@@ -37,6 +37,10 @@ tl::expected<std::size_t, protocol::PortError> ScriptedPort::write(
 
 tl::expected<std::size_t, protocol::PortError> ScriptedPort::read(std::span<std::byte> into) noexcept {
   if (read_error) return tl::unexpected{*read_error};
+  if (endless_noise) {
+    into.front() = *endless_noise;
+    return 1;
+  }
   if (arrived_.empty()) {
     arrived_.assign(late_.begin(), late_.end());
     late_.clear();

@@ -29,6 +29,8 @@ class ScriptedPort final : public protocol::SerialPort {
   std::optional<protocol::PortError> open_error;
   std::optional<protocol::PortError> write_error;
   std::optional<protocol::PortError> read_error;
+  /// Every read returns this byte, for ever.
+  std::optional<std::byte> endless_noise;
   /// A write takes no more bytes than this.
   std::size_t write_bytes_max = 1000;
 
