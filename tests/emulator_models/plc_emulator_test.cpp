@@ -1,0 +1,228 @@
+// The real program, from another process: the worked examples on a pseudo-terminal, byte for byte, and what
+// it leaves behind.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "protocol/role_lock.hpp"
+#include "protocol/shared_memory_wrapper.hpp"
+#include "tests/emulator_models/emulator_process.hpp"
+#include "tests/protocol/fx/worked_examples.hpp"
+
+namespace emulator_models {
+namespace {
+
+using protocol::SharedMemoryWrapper;
+using protocol::fx::examples::bytes;
+
+struct Dialogue {
+  const char* what;
+  const char* request;
+  const char* answer;
+};
+
+/// Sends a request, takes the answer, then makes sure that nothing follows it: the ACK to an ENQ comes next.
+void expect_dialogue(const SerialLine& line, const Dialogue& dialogue) {
+  SCOPED_TRACE(dialogue.what);
+  const auto wanted = bytes(dialogue.answer);
+  line.send(bytes(dialogue.request));
+  EXPECT_EQ(line.receive(wanted.size()), wanted);
+  line.send(bytes("05"));
+  EXPECT_EQ(line.receive(1), bytes("06"));
+}
+
+/// The examples that each model answers alike. The first scan has passed when M8000-M8007 read 09.
+constexpr Dialogue common_dialogues[] = {
+    {"ENQ", "05", "06"},
+    {"read Y0-Y17: the yellow lamp Y11 is lit", "02 30 30 30 41 30 30 32 03 36 36",
+     "02 30 30 30 32 03 43 35"},
+    {"read X0-X17: standing, door and E-stop chain closed", "02 30 30 30 38 30 30 32 03 35 44",
+     "02 36 32 30 30 03 43 42"},
+    {"read Y0-Y7", "02 30 30 30 41 30 30 31 03 36 35", "02 30 30 03 36 33"},
+    {"write D8000 = 300", "02 31 30 45 30 30 30 32 32 43 30 31 03 34 31", "06"},
+    {"force Y0 on", "02 37 30 30 30 35 03 46 46", "06"},
+    {"force Y0 off", "02 38 30 30 30 35 03 30 30", "06"},
+    {"force M100 off", "02 38 36 34 30 38 03 30 44", "06"},
+    {"force S0 on", "02 37 30 30 30 30 03 46 41", "06"},
+    {"read T10", "02 30 30 38 31 34 30 32 03 36 32", "02 30 30 30 30 03 43 33"},
+    {"parameters", "02 30 38 30 30 30 32 45 03 37 32", "15"},
+    {"end of program write", "02 42 03 34 35", "15"},
+};
+
+/// Of FX1N and up: FX1S has neither the devices nor the E commands.
+constexpr Dialogue larger_dialogues[] = {
+    {"write D123, D124", "02 31 31 30 46 36 30 34 33 34 31 32 43 44 41 42 03 34 39", "06"},
+    {"read D123, D124", "02 30 31 30 46 36 30 34 03 37 34", "02 33 34 31 32 43 44 41 42 03 44 37"},
+    {"read C200", "02 30 30 43 30 30 30 34 03 36 41", "02 30 30 30 30 30 30 30 30 03 38 33"},
+    {"force Y20 on", "02 37 31 30 30 35 03 30 30", "06"},
+};
+
+constexpr Dialogue fx1n_dialogues[] = {
+    {"D8001", "02 30 30 45 30 32 30 32 03 36 43", "02 36 32 36 36 03 44 37"},
+    {"run state", "02 45 30 30 30 31 43 30 30 31 03 44 44", "02 30 39 03 36 43"},
+};
+constexpr Dialogue fx1s_dialogues[] = {
+    {"D8001", "02 30 30 45 30 32 30 32 03 36 43", "02 43 32 35 36 03 45 33"},
+    {"wide read D0", "02 45 30 30 34 30 30 30 30 32 03 43 45", "15"},
+};
+constexpr Dialogue fx2n_dialogues[] = {
+    {"D8001", "02 30 30 45 30 32 30 32 03 36 43", "02 42 31 35 45 03 46 30"},
+};
+constexpr Dialogue fx3u_dialogues[] = {
+    {"D8001", "02 30 30 45 30 32 30 32 03 36 43", "02 42 31 35 45 03 46 30"},
+    {"D8101", "02 30 30 45 43 41 30 32 03 38 45", "02 37 31 33 46 03 45 34"},
+    {"wide read D0", "02 45 30 30 34 30 30 30 30 32 03 43 45", "02 30 30 30 30 03 43 33"},
+    {"wide write D100 = 258", "02 45 31 30 34 30 43 38 30 32 30 32 30 31 03 41 44", "06"},
+    {"wide read D8127", "02 45 30 30 38 30 46 45 30 32 03 46 44", "02 30 30 30 30 03 43 33"},
+    {"wide force M0 on", "02 45 37 30 30 34 30 03 34 33", "06"},
+    {"wide force M0 off", "02 45 38 30 30 34 30 03 34 34", "06"},
+    {"wide force Y0 on", "02 45 37 30 30 35 45 03 35 39", "06"},
+};
+
+/// Asks for the run state until it is `wanted`: 09 in RUN, 0A in STOP.
+void wait_for_run_state(const SerialLine& line, const char* wanted) {
+  std::vector<std::byte> state;
+  do {
+    line.send(bytes("02 30 30 31 45 30 30 31 03 36 41"));
+    state = line.receive(6);
+    ASSERT_EQ(state.size(), 6U);
+  } while (state != bytes(wanted));
+}
+
+void expect_worked_examples(const std::string& model, std::span<const Dialogue> dialogues) {
+  EmulatorProcess emulator{{"--pty", "--model", model}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  wait_for_run_state(line, "02 30 39 03 36 43");
+  for (const Dialogue& dialogue : common_dialogues) expect_dialogue(line, dialogue);
+  if (model != "FX1S")
+    for (const Dialogue& dialogue : larger_dialogues) expect_dialogue(line, dialogue);
+  for (const Dialogue& dialogue : dialogues) expect_dialogue(line, dialogue);
+
+  line.send(bytes("02 30 31 30 30 30 34 30 03 35 38"));  // 64 bytes from D0
+  EXPECT_EQ(line.receive(132).size(), 132U);
+  expect_dialogue(line, {"force M100 on", "02 37 36 34 30 38 03 30 43", "06"});
+  expect_dialogue(line, {"force M8037 on: STOP", "02 37 32 35 30 46 03 31 37", "06"});
+  wait_for_run_state(line, "02 30 41 03 37 34");
+
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST(PlcEmulatorPty, fx1s_answers_its_worked_examples) { expect_worked_examples("FX1S", fx1s_dialogues); }
+TEST(PlcEmulatorPty, fx1n_answers_its_worked_examples) { expect_worked_examples("FX1N", fx1n_dialogues); }
+TEST(PlcEmulatorPty, fx2n_answers_its_worked_examples) { expect_worked_examples("FX2N", fx2n_dialogues); }
+TEST(PlcEmulatorPty, fx3u_answers_its_worked_examples) { expect_worked_examples("fx3u", fx3u_dialogues); }
+
+TEST(PlcEmulatorPty, a_cut_off_frame_is_dropped_by_enq_and_by_stx) {
+  EmulatorProcess emulator{{"--pty"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  expect_dialogue(line, {"ENQ after half a frame", "02 30 31 30 05", "06"});
+  expect_dialogue(line, {"STX after half a frame", "02 30 31 30 02 37 30 30 30 35 03 46 46", "06"});
+  expect_dialogue(line, {"noise between frames", "30 41 0D 0A 02 37 30 30 30 35 03 46 46", "06"});
+}
+
+TEST(PlcEmulatorPty, two_requests_at_once_are_answered_in_their_order) {
+  EmulatorProcess emulator{{"--pty"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  expect_dialogue(line,
+                  {"D8101, then force Y0", "02 30 30 45 43 41 30 32 03 38 45 02 37 30 30 30 35 03 46 46",
+                   "02 37 31 33 46 03 45 34 06"});
+}
+
+TEST(PlcEmulatorPty, the_next_client_finds_the_line_as_the_first_did) {
+  EmulatorProcess emulator{{"--pty"}};
+  const std::string path = emulator.wait_for_line("pty: ");
+  for (int client = 0; client < 3; ++client) {
+    const SerialLine line{path};
+    expect_dialogue(line, {"ENQ", "05", "06"});
+  }
+}
+
+TEST(PlcEmulatorPty, watch_prints_a_line_for_each_change) {
+  EmulatorProcess emulator{{"--pty", "--watch"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  expect_dialogue(line, {"force M0 on", "02 45 37 30 30 34 30 03 34 33", "06"});
+  EXPECT_TRUE(emulator.wait_for_text("M0         0 -> 1"));
+  emulator.send_signal(SIGINT);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+struct PlcEmulatorSegment : ::testing::Test {
+  const std::string segment = "ltsim-test-emulator-" + std::to_string(::getpid());
+  ~PlcEmulatorSegment() override { SharedMemoryWrapper::remove(segment); }
+};
+
+TEST_F(PlcEmulatorSegment, sigterm_and_sigint_end_the_wait_and_leave_no_named_object) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    EmulatorProcess emulator{{"--segment", segment, "--pty"}};
+    ASSERT_EQ(emulator.wait_for_line("segment: "), segment);
+    EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
+    emulator.send_signal(signal);
+    EXPECT_EQ(emulator.wait_for_exit(), 0);
+    EXPECT_FALSE(SharedMemoryWrapper::exists(segment));
+  }
+}
+
+TEST_F(PlcEmulatorSegment, what_a_killed_emulator_left_is_removed_with_a_message) {
+  {
+    EmulatorProcess killed{{"--segment", segment}};
+    ASSERT_EQ(killed.wait_for_line("segment: "), segment);
+    killed.send_signal(SIGKILL);
+    EXPECT_EQ(killed.wait_for_exit(), -SIGKILL);
+  }
+  EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
+  EmulatorProcess fresh{{"--segment", segment}};
+  EXPECT_NE(fresh.wait_for_line("plc-emulator: removed what a killed process left"), "");
+  EXPECT_EQ(fresh.wait_for_line("segment: "), segment);
+  fresh.send_signal(SIGTERM);
+  EXPECT_EQ(fresh.wait_for_exit(), 0);
+}
+
+TEST_F(PlcEmulatorSegment, an_emulator_that_comes_back_joins_the_segment_of_a_running_kernel) {
+  protocol::RoleLock kernel{segment, protocol::Role::kernel};
+  ASSERT_TRUE(kernel.try_lock().has_value());
+  {
+    EmulatorProcess killed{{"--segment", segment}};
+    ASSERT_EQ(killed.wait_for_line("segment: "), segment);
+    killed.send_signal(SIGKILL);
+    EXPECT_EQ(killed.wait_for_exit(), -SIGKILL);
+  }
+  EmulatorProcess again{{"--segment", segment}};
+  EXPECT_EQ(again.wait_for_line("segment: "), segment);
+  EXPECT_NE(again.printed().find("joined"), std::string::npos);
+  again.send_signal(SIGTERM);
+  EXPECT_EQ(again.wait_for_exit(), 0);
+  EXPECT_NE(again.printed().find("a kernel is still attached"), std::string::npos);
+}
+
+TEST_F(PlcEmulatorSegment, a_second_emulator_is_refused_and_the_first_one_goes_on) {
+  EmulatorProcess first{{"--segment", segment}};
+  ASSERT_EQ(first.wait_for_line("segment: "), segment);
+  EmulatorProcess second{{"--segment", segment}};
+  EXPECT_EQ(second.wait_for_exit(), 2);
+  EXPECT_NE(second.printed().find("another emulator"), std::string::npos);
+  EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
+  first.send_signal(SIGTERM);
+  EXPECT_EQ(first.wait_for_exit(), 0);
+}
+
+TEST(PlcEmulatorUsage, help_is_0_and_bad_usage_is_2) {
+  const struct {
+    std::vector<std::string> arguments;
+    int exit_code;
+  } uses[] = {{{"--help"}, 0},
+              {{}, 2},
+              {{"--pty", "--model", "FX9"}, 2},
+              {{"--pty", "--scan-period-ms", "0"}, 2},
+              {{"--pty", "--length-check", "maybe"}, 2},
+              {{"--nonsense"}, 2}};
+  for (const auto& use : uses) {
+    EmulatorProcess emulator{use.arguments};
+    EXPECT_EQ(emulator.wait_for_exit(), use.exit_code);
+    EXPECT_NE(emulator.printed(), "");
+  }
+}
+
+}  // namespace
+}  // namespace emulator_models
