@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel_mocks/modal_rules.hpp"
 #include "kernel_mocks/nc_lexer.hpp"
 #include "kernel_mocks/nc_rules.hpp"
 

@@ -1,16 +1,12 @@
 #include "kernel_mocks/nc_rules.hpp"
 
-#include <algorithm>
 #include <array>
-#include <string_view>
 #include <utility>
+
+#include "kernel_mocks/g_codes.hpp"
 
 namespace kernel_mocks {
 namespace {
-
-constexpr bool is_axis(char letter) noexcept {
-  return std::string_view{"XYZABCUVW"}.find(letter) != std::string_view::npos;
-}
 
 // M codes that cannot stand in one block, as bits; an M code without bits is in conflict with itself only.
 enum MGroup : unsigned { program_flow = 1, spindle = 2, coolant = 4, overrides = 8, clamp = 16 };
@@ -58,33 +54,6 @@ std::optional<NcFault> check_g_code(Decimal value) noexcept {
 }
 
 bool is_count(Decimal value) noexcept { return value.is_whole() && !value.is_negative(); }
-
-// The G codes of one block by what they do with other words.
-struct GCodesOfBlock {
-  std::optional<GTenths> motion;
-  std::optional<GTenths> axis_user;  // G28, G30 or G92: takes the axis words away from the motion
-  bool dwell = false;
-  bool path_tolerance = false;
-  bool machine_coordinates = false;
-  bool compensation = false;
-  bool tool_length = false;
-};
-
-GCodesOfBlock g_codes_of(std::span<const LexedWord> words) noexcept {
-  GCodesOfBlock result;
-  for (const LexedWord& word : words) {
-    if (word.letter != 'G') continue;
-    const GTenths code = *g_tenths(word.value);
-    if (g_group(code) == GGroup::motion) result.motion = code;
-    if (code == 280 || code == 300 || code == 920) result.axis_user = code;
-    if (code == 40) result.dwell = true;
-    if (code == 640) result.path_tolerance = true;
-    if (code == 530) result.machine_coordinates = true;
-    if (code == 410 || code == 420) result.compensation = true;
-    if (code == 430) result.tool_length = true;
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -149,74 +118,6 @@ std::optional<NcError> check_block(std::span<const LexedWord> words, std::uint32
       }
       if (letter == 'N' && index != 0) return fault(NcFault::number_not_first, word);
     }
-  }
-  return std::nullopt;
-}
-
-std::optional<NcError> ModalRules::check(std::span<const LexedWord> words, std::uint32_t line) {
-  const GCodesOfBlock codes = g_codes_of(words);
-  const auto fault = [&](NcFault what, const LexedWord& word) { return NcError{what, line, word.text}; };
-  const auto first_with = [&](auto predicate) {
-    const auto found = std::ranges::find_if(words, predicate);
-    return found == words.end() ? nullptr : &*found;
-  };
-  const auto letter = [&](char wanted) {
-    return first_with([wanted](const LexedWord& word) { return word.letter == wanted; });
-  };
-  const LexedWord* const axis = first_with([](const LexedWord& word) { return is_axis(word.letter); });
-  const LexedWord* const motion_word = first_with([](const LexedWord& word) {
-    return word.letter == 'G' && g_group(*g_tenths(word.value)) == GGroup::motion;
-  });
-
-  if (codes.motion) motion_ = *codes.motion;
-  for (const LexedWord& word : words) {
-    if (word.letter == 'G' && g_group(*g_tenths(word.value)) == GGroup::feed_mode) {
-      const bool inverse = *g_tenths(word.value) == 930;
-      // A feed of one mode means nothing in another: the program has to give it anew.
-      if (inverse != inverse_time_) feed_is_set_ = false;
-      inverse_time_ = inverse;
-    }
-  }
-  const LexedWord* const feed = letter('F');
-  if (feed != nullptr) feed_is_set_ = !feed->value.is_zero();
-  if (feed == nullptr && inverse_time_) feed_is_set_ = false;
-
-  const bool motion_claims_axes = codes.motion && motion_ != 800;
-  if (axis != nullptr && codes.axis_user && motion_claims_axes) {
-    return fault(NcFault::two_users_of_axis_words, *motion_word);
-  }
-  const bool is_arc_mode = motion_ == 20 || motion_ == 30;
-  const bool moves = axis != nullptr && !codes.axis_user;
-  const LexedWord* const radius = letter('R');
-  const LexedWord* const centre = first_with(
-      [](const LexedWord& word) { return word.letter == 'I' || word.letter == 'J' || word.letter == 'K'; });
-  // A full circle has a centre and no axis words.
-  const bool is_arc =
-      is_arc_mode && !codes.axis_user && (moves || centre != nullptr || radius != nullptr || codes.motion);
-
-  if (moves && motion_ == 800) return fault(NcFault::axis_words_without_motion, *axis);
-  if (codes.machine_coordinates && motion_ != 0 && motion_ != 10) {
-    return NcError{NcFault::machine_coordinates_without_line, line, "G53"};
-  }
-  if (is_arc && (radius != nullptr) == (centre != nullptr)) {
-    return fault(NcFault::arc_without_centre, motion_word != nullptr ? *motion_word : words.back());
-  }
-  if (codes.dwell && (letter('P') == nullptr || letter('P')->value.is_negative())) {
-    return NcError{NcFault::dwell_without_time, line, "G4"};
-  }
-  const auto unused = [&](char wanted, bool used) {
-    const LexedWord* const word = letter(wanted);
-    return word != nullptr && !used ? word : nullptr;
-  };
-  for (const LexedWord* const word :
-       {unused('I', is_arc), unused('J', is_arc), unused('K', is_arc), unused('R', is_arc),
-        unused('P', codes.dwell || codes.path_tolerance || is_arc), unused('Q', codes.path_tolerance),
-        unused('D', codes.compensation), unused('H', codes.tool_length)}) {
-    if (word != nullptr) return fault(NcFault::word_without_user, *word);
-  }
-  const bool feed_move = is_arc || (motion_ == 10 && moves);
-  if (feed_move && !feed_is_set_) {
-    return fault(NcFault::motion_without_feed, motion_word != nullptr ? *motion_word : words.back());
   }
   return std::nullopt;
 }

@@ -1,9 +1,9 @@
 // What makes the words of a block a block that this control can carry out.
 //
-// Three steps, each a function of its own: every word by itself, the words of one block together, the block
-// after those before it (which motion and which feed are in force). The first fault in that order is
-// reported. The rules are those that LinuxCNC's interpreter was observed to apply (README.md lists them),
-// with one leaning: what would have to be guessed is refused.
+// Three steps: every word by itself, the words of one block together, and the block after those before it
+// (modal_rules.hpp). The first fault in that order is reported. The rules are those that LinuxCNC's
+// interpreter was observed to apply (README.md lists them), with one leaning: what would have to be guessed
+// is refused.
 //
 // Not here: whether the machine has a function (block_plan.hpp).
 #pragma once
@@ -12,7 +12,6 @@
 #include <optional>
 #include <span>
 
-#include "kernel_mocks/g_codes.hpp"
 #include "kernel_mocks/nc_error.hpp"
 #include "kernel_mocks/nc_lexer.hpp"
 
@@ -27,18 +26,5 @@ inline constexpr unsigned m_codes_per_block_max = 4;
 /// The words of one block together: none repeated, one code of each modal group.
 /// @param words  each passed check_word()
 [[nodiscard]] std::optional<NcError> check_block(std::span<const LexedWord> words, std::uint32_t line);
-
-/// Blocks one after the other: who uses which word, and whether a motion has all that it needs.
-class ModalRules {
- public:
-  /// @param words  passed check_block()
-  [[nodiscard]] std::optional<NcError> check(std::span<const LexedWord> words, std::uint32_t line);
-
- private:
-  /// The motion in force; 80 (none) until the program chooses one.
-  GTenths motion_ = 800;
-  bool feed_is_set_ = false;
-  bool inverse_time_ = false;
-};
 
 }  // namespace kernel_mocks

@@ -10,7 +10,7 @@
 
 namespace kernel_mocks {
 
-/// Longest part program file: 64 MiB, more than a week of machining in short lines.
+/// Longest part program file: 64 MiB.
 inline constexpr std::size_t program_bytes_max = std::size_t{64} * 1024 * 1024;
 
 enum class FileError : std::uint8_t {

@@ -164,6 +164,8 @@ TEST(NcRules, inverse_time_needs_a_feed_in_every_block) {
 }
 
 TEST(NcRules, a_feed_of_another_feed_mode_does_not_count) {
+  EXPECT_EQ(refusal("F100\nG95 G1 X1\nM2"), "line 2, word 'G1'" + no_feed);
+  EXPECT_EQ(refusal("F100\nG94 G1 X1\nM2"), "");
   EXPECT_EQ(refusal("F100\nG93\nG1 X1\nM2"), "line 3, word 'G1'" + no_feed);
   EXPECT_EQ(refusal("G93 G1 X1 F2\nG94 X2\nM2"), "line 2, word 'X2'" + no_feed);
 }
