@@ -1,0 +1,32 @@
+// How an execution ended.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ltsim {
+
+enum class OutcomeKind : std::uint8_t {
+  passed,
+  invariant,  ///< a property of the scenario does not hold
+  assertion,  ///< the code under test contradicted itself: assert, abort
+  deadlock,   ///< no task can run and no timer is armed
+  livelock,   ///< more scheduling points than the scenario allows
+  data_race,
+  crash,        ///< an exception nobody caught, a signal
+  leak,         ///< a lock held or an object left behind at the end
+  unsupported,  ///< a call that the world does not simulate: our limit, not a finding
+};
+
+[[nodiscard]] std::string_view to_string(OutcomeKind kind) noexcept;
+
+struct Outcome {
+  OutcomeKind kind = OutcomeKind::passed;
+  std::string message;
+
+  [[nodiscard]] bool passed() const noexcept { return kind == OutcomeKind::passed; }
+  bool operator==(const Outcome&) const = default;
+};
+
+}  // namespace ltsim

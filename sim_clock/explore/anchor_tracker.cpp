@@ -1,0 +1,46 @@
+#include "sim_clock/explore/anchor_tracker.hpp"
+
+#include <fmt/format.h>
+
+#include "sim_clock/world/world.hpp"
+
+namespace ltsim {
+
+AnchorTracker::AnchorTracker(const World& world, StepListener* next) : world_(world), next_(next) {}
+
+void AnchorTracker::arrives(const Task& task, const Operation& operation) noexcept {
+  stand_at(
+      fmt::format("{} before {} {}", task.name, to_string(operation.kind), world_.objects().name(operation)));
+  if (next_ != nullptr) next_->arrives(task, operation);
+}
+
+void AnchorTracker::performs(const Task& task, const Operation& operation) noexcept {
+  running_ = task.name;
+  if (next_ != nullptr) next_->performs(task, operation);
+}
+
+void AnchorTracker::blocks(const Task& task) noexcept {
+  stand_at(fmt::format("{} in {} {}", task.name, to_string(task.pending.kind),
+                       world_.objects().name(task.pending)));
+  if (next_ != nullptr) next_->blocks(task);
+}
+
+void AnchorTracker::ends(const Task& task) noexcept {
+  anchor_ = fmt::format("{} end", task.name);
+  if (next_ != nullptr) next_->ends(task);
+}
+
+void AnchorTracker::asks(std::string_view what) noexcept {
+  stand_at(fmt::format("{} asks {}", running_, what));
+  if (next_ != nullptr) next_->asks(what);
+}
+
+void AnchorTracker::notes(std::string_view text) noexcept {
+  if (next_ != nullptr) next_->notes(text);
+}
+
+void AnchorTracker::stand_at(const std::string& place) {
+  anchor_ = fmt::format("{} #{}", place, ++visits_[place]);
+}
+
+}  // namespace ltsim

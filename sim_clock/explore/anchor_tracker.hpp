@@ -1,0 +1,40 @@
+// Names the place at which an execution stands, the same way each time that it stands there: the anchors of a
+// schedule.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "sim_clock/world/step_listener.hpp"
+
+namespace ltsim {
+
+class World;
+
+class AnchorTracker final : public StepListener {
+ public:
+  /// @param next  is told everything too; may be null
+  AnchorTracker(const World& world, StepListener* next);
+
+  /// "kernel/main before sem_wait handoff #2"; "- start" before the first step.
+  [[nodiscard]] const std::string& anchor() const noexcept { return anchor_; }
+
+  void arrives(const Task& task, const Operation& operation) noexcept override;
+  void performs(const Task& task, const Operation& operation) noexcept override;
+  void blocks(const Task& task) noexcept override;
+  void ends(const Task& task) noexcept override;
+  void asks(std::string_view what) noexcept override;
+  void notes(std::string_view text) noexcept override;
+
+ private:
+  void stand_at(const std::string& place);
+
+  const World& world_;
+  StepListener* next_;
+  std::string anchor_ = "- start";
+  std::string running_ = "-";
+  std::unordered_map<std::string, unsigned> visits_;
+};
+
+}  // namespace ltsim

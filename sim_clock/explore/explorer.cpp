@@ -1,0 +1,132 @@
+#include "sim_clock/explore/explorer.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include <fmt/format.h>
+
+#include "sim_clock/check/signal_guard.hpp"
+#include "sim_clock/explore/hash_set.hpp"
+#include "sim_clock/explore/random_generator.hpp"
+#include "sim_clock/explore/recording_strategy.hpp"
+#include "sim_clock/trace/text_trace.hpp"
+
+namespace ltsim {
+namespace {
+
+/// The first line in which two texts differ, of both.
+std::string first_difference(std::string_view one, std::string_view other) {
+  while (!one.empty() || !other.empty()) {
+    const std::string_view a = one.substr(0, one.find('\n'));
+    const std::string_view b = other.substr(0, other.find('\n'));
+    if (a != b) return fmt::format("first \"{}\", then \"{}\"", a, b);
+    one.remove_prefix(std::min(a.size() + 1, one.size()));
+    other.remove_prefix(std::min(b.size() + 1, other.size()));
+  }
+  return "only the very first run differed";
+}
+
+}  // namespace
+
+std::uint64_t Explorer::seed_of(std::uint64_t exploration_seed, std::uint64_t execution) noexcept {
+  return splitmix64(splitmix64(exploration_seed) + execution);
+}
+
+std::uint64_t Explorer::execute(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
+                                StepListener* listener) {
+  strategy.begin_execution(seed);
+  world_.reset(strategy, listener);
+  scenario.body(world_);
+  if (world_.scheduler().outcome().kind == OutcomeKind::unsupported) {
+    throw NotSimulable{world_.scheduler().outcome().message};
+  }
+  return world_.scheduler().trace_hash();
+}
+
+ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, const ExploreOptions& options) {
+  const SignalGuard signals;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin);
+  };
+  constexpr std::uint64_t executions_per_look_at_the_time = 64;
+  ExploreReport report;
+  HashSet traces{distinct_schedules_max};
+  while (report.executions < options.executions_max) {
+    if (options.seconds_max && report.executions % executions_per_look_at_the_time == 0 &&
+        elapsed() >= *options.seconds_max) {
+      break;
+    }
+    const std::uint64_t execution = ++report.executions;
+    const std::uint64_t seed = seed_of(options.seed, execution);
+    const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
+    report.decisions += world_.scheduler().decisions();
+    report.points += world_.scheduler().points();
+    traces.insert(hash);
+    if (world_.scheduler().outcome().passed()) {
+      if (std::has_single_bit(execution) && execute(scenario, strategy, seed, nullptr) != hash) {
+        throw not_repeatable(scenario, strategy, seed);
+      }
+      continue;
+    }
+    const Outcome outcome = world_.scheduler().outcome();
+    const auto known = std::find_if(report.failures.begin(), report.failures.end(),
+                                    [&](const Failure& failure) { return failure.outcome == outcome; });
+    if (known != report.failures.end()) {
+      ++known->count;
+      continue;
+    }
+    Failure failure = record(scenario, strategy, seed);
+    if (failure.trace_hash != hash || failure.outcome != outcome) {
+      throw not_repeatable(scenario, strategy, seed);
+    }
+    failure.execution = execution;
+    failure.count = 1;
+    report.failures.push_back(std::move(failure));
+    if (!options.keep_going) break;
+  }
+  report.seconds = elapsed().count();
+  report.distinct_schedules = traces.size();
+  return report;
+}
+
+Explorer::NotSimulable Explorer::not_repeatable(const Scenario& scenario, Strategy& strategy,
+                                                std::uint64_t seed) {
+  TextTrace one{world_};
+  execute(scenario, strategy, seed, &one);
+  TextTrace other{world_};
+  execute(scenario, strategy, seed, &other);
+  return {
+      fmt::format("two runs of seed {} of {} differ: a variable of the code under test or of the scenario "
+                  "survives from one "
+                  "execution to the next. Where: {}",
+                  seed, scenario.name, first_difference(one.text(), other.text()))};
+}
+
+Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
+  AnchorTracker anchors{world_, nullptr};
+  RecordingStrategy recording{strategy, world_, anchors};
+  const std::uint64_t hash = execute(scenario, recording, seed, &anchors);
+  const Outcome& outcome = world_.scheduler().outcome();
+  return Failure{.outcome = outcome,
+                 .seed = seed,
+                 .trace_hash = hash,
+                 .at = world_.now(),
+                 .schedule = {.scenario = std::string{scenario.name},
+                              .outcome = outcome.kind,
+                              .message = outcome.message,
+                              .deviations = recording.deviations()}};
+}
+
+ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
+  const SignalGuard signals;
+  AnchorTracker anchors{world_, listener};
+  ReplayStrategy strategy{schedule.deviations, world_, anchors};
+  const std::uint64_t hash = execute(scenario, strategy, 0, &anchors);
+  return ReplayReport{.outcome = world_.scheduler().outcome(),
+                      .trace_hash = hash,
+                      .at = world_.now(),
+                      .divergence = strategy.divergence()};
+}
+
+}  // namespace ltsim

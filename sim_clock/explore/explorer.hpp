@@ -1,0 +1,95 @@
+// Runs a scenario again and again under a strategy and reports how it failed.
+//
+// A failing execution is run a second time, with the same seed, to write its schedule down; and of those that
+// pass the 1st, 2nd, 4th, 8th ... are run twice as well. Two runs of a seed that differ mean that something
+// survived from one execution to the next or came from outside: nothing that was found would be worth
+// anything, so exploration stops.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim_clock/check/outcome.hpp"
+#include "sim_clock/explore/replay_strategy.hpp"
+#include "sim_clock/explore/schedule.hpp"
+#include "sim_clock/explore/strategy.hpp"
+#include "sim_clock/scenario/scenario.hpp"
+
+namespace ltsim {
+
+struct ExploreOptions {
+  std::uint64_t seed = 1;
+  std::uint64_t executions_max = 100'000;
+  std::optional<std::chrono::duration<double>> seconds_max;  ///< of real time; looked at every 64 executions
+  bool keep_going = false;  ///< go on after a failure and report each different one once
+};
+
+struct Failure {
+  Outcome outcome;
+  std::uint64_t execution = 0;  ///< the first that failed so; 1 is the first of the exploration
+  std::uint64_t seed = 0;       ///< of that execution
+  std::uint64_t count = 0;      ///< executions that failed so
+  std::uint64_t trace_hash = 0;
+  SimTime at{0};
+  Schedule schedule;
+};
+
+struct ExploreReport {
+  std::uint64_t executions = 0;
+  std::uint64_t decisions = 0;
+  std::uint64_t points = 0;
+  double seconds = 0;
+  std::uint64_t distinct_schedules = 0;  ///< different traces; a lower bound beyond distinct_schedules_max
+  std::vector<Failure> failures;
+};
+
+struct ReplayReport {
+  Outcome outcome;
+  std::uint64_t trace_hash = 0;
+  SimTime at{0};
+  std::optional<ReplayStrategy::Divergence> divergence;
+};
+
+class Explorer {
+ public:
+  static constexpr std::size_t distinct_schedules_max = std::size_t{1} << 22U;
+
+  /// Thrown when two runs of one seed differ, or the code under test does what the world cannot simulate: no
+  /// result of the exploration counts then.
+  struct NotSimulable {
+    std::string message;
+  };
+
+  explicit Explorer(World& world) : world_(world) {}
+
+  /// Seed of the `execution`-th execution of an exploration, from 1.
+  [[nodiscard]] static std::uint64_t seed_of(std::uint64_t exploration_seed,
+                                             std::uint64_t execution) noexcept;
+
+  [[nodiscard]] ExploreReport explore(const Scenario& scenario, Strategy& strategy,
+                                      const ExploreOptions& options);
+
+  /// Runs one execution and writes its choices down.
+  [[nodiscard]] Failure record(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
+
+  /// @param listener  is told every step; may be null
+  [[nodiscard]] ReplayReport replay(const Scenario& scenario, const Schedule& schedule,
+                                    StepListener* listener);
+
+  /// Runs one execution. @return its trace hash
+  std::uint64_t execute(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
+                        StepListener* listener);
+
+ private:
+  /// Runs the seed again, twice, to say where the runs part.
+  [[nodiscard]] NotSimulable not_repeatable(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
+
+  World& world_;
+};
+
+}  // namespace ltsim

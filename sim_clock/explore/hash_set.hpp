@@ -1,0 +1,48 @@
+// A set of 64-bit hashes, for counting different traces: open addressing, one word an entry, no deletion.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ltsim {
+
+class HashSet {
+ public:
+  /// @param entries_max  inserting more has no effect
+  explicit HashSet(std::size_t entries_max) : entries_max_(entries_max), slots_(1024, 0) {}
+
+  void insert(std::uint64_t hash) {
+    hash = hash == 0 ? 1 : hash;  // 0 marks a free slot
+    if (count_ == entries_max_) return;
+    if (2 * count_ >= slots_.size()) grow();
+    count_ += place(hash) ? 1 : 0;
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+
+ private:
+  bool place(std::uint64_t hash) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = hash & mask;
+    for (; slots_[slot] != 0; slot = (slot + 1) & mask) {
+      if (slots_[slot] == hash) return false;
+    }
+    slots_[slot] = hash;
+    return true;
+  }
+
+  void grow() {
+    std::vector<std::uint64_t> old(2 * slots_.size(), 0);
+    old.swap(slots_);
+    for (const std::uint64_t hash : old) {
+      if (hash != 0) place(hash);
+    }
+  }
+
+  std::size_t entries_max_;
+  std::size_t count_ = 0;
+  std::vector<std::uint64_t> slots_;  // a power of two of them, at most half full
+};
+
+}  // namespace ltsim

@@ -1,0 +1,32 @@
+// Writes down what another strategy chooses, as the deviations of a schedule.
+#pragma once
+
+#include <vector>
+
+#include "sim_clock/explore/anchor_tracker.hpp"
+#include "sim_clock/explore/schedule.hpp"
+#include "sim_clock/explore/strategy.hpp"
+
+namespace ltsim {
+
+class RecordingStrategy final : public Strategy {
+ public:
+  /// @param anchors  must be the listener of the same execution
+  RecordingStrategy(Strategy& chooser, const World& world, const AnchorTracker& anchors)
+      : chooser_(chooser), world_(world), anchors_(anchors) {}
+
+  [[nodiscard]] std::string_view name() const noexcept override { return chooser_.name(); }
+  void begin_execution(std::uint64_t seed) noexcept override { chooser_.begin_execution(seed); }
+  [[nodiscard]] std::size_t choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept override;
+  [[nodiscard]] SlowMoment slow_moment(SimTime until_next_timer) noexcept override;
+
+  [[nodiscard]] const std::vector<Deviation>& deviations() const noexcept { return deviations_; }
+
+ private:
+  Strategy& chooser_;
+  const World& world_;
+  const AnchorTracker& anchors_;
+  std::vector<Deviation> deviations_;
+};
+
+}  // namespace ltsim

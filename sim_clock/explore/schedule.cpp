@@ -1,0 +1,183 @@
+#include "sim_clock/explore/schedule.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "sim_clock/explore/duration_text.hpp"
+
+namespace ltsim {
+namespace {
+
+constexpr std::string_view header = "ltsim schedule 1";
+constexpr std::string_view only_memory = "sc";
+
+/// Words are separated by any number of blanks.
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t begin = line.find_first_not_of(" \t", at);
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    at = end;
+  }
+  return words;
+}
+
+std::string_view rest_after_first_word(std::string_view line) {
+  const std::size_t blank = line.find_first_of(" \t");
+  if (blank == std::string_view::npos) return {};
+  const std::size_t begin = line.find_first_not_of(" \t", blank);
+  return begin == std::string_view::npos ? std::string_view{} : line.substr(begin);
+}
+
+std::string join(const std::vector<std::string_view>& words, std::size_t begin, std::size_t end) {
+  std::string text;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (i != begin) text += ' ';
+    text += words[i];
+  }
+  return text;
+}
+
+/// "task phase operation object #n", "task asks what #n", "task end" or "- start".
+bool is_anchor(const std::vector<std::string_view>& words, std::size_t begin, std::size_t end) {
+  if (end - begin < 2) return false;
+  const std::string_view phase = words[begin + 1];
+  if (phase == "end" || phase == "start") return end - begin == 2;
+  const std::size_t count = phase == "before" || phase == "in" ? 5U : phase == "asks" ? 4U : 0U;
+  const std::string_view occurrence = words[end - 1];
+  return end - begin == count && occurrence.size() > 1 && occurrence.front() == '#' &&
+         occurrence.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+std::optional<OutcomeKind> parse_outcome_kind(std::string_view text) {
+  for (auto kind = OutcomeKind::passed; kind <= OutcomeKind::unsupported;
+       kind = static_cast<OutcomeKind>(static_cast<int>(kind) + 1)) {
+    if (to_string(kind) == text) return kind;
+  }
+  return std::nullopt;
+}
+
+tl::expected<Deviation, std::string> parse_deviation(const std::vector<std::string_view>& words) {
+  const std::string_view kind = words.front();
+  Deviation deviation;
+  std::size_t anchor_end = words.size() - 1;
+  if (kind == "switch") {
+    anchor_end = words.size() < 2 ? 0 : words.size() - 2;
+    if (anchor_end == 0 || words[anchor_end] != "to") {
+      return tl::unexpected<std::string>("a switch line is: switch TASK before OPERATION OBJECT #N to TASK");
+    }
+    deviation.to_task = words.back();
+  } else if (kind == "time" || kind == "stall") {
+    deviation.kind = kind == "time" ? Deviation::Kind::pass_time : Deviation::Kind::stall;
+    const std::string_view duration = words.back();
+    const auto passes = duration.starts_with('+') ? parse_duration(duration.substr(1)) : std::nullopt;
+    if (!passes)
+      return tl::unexpected<std::string>(
+          "a time or stall line ends with a duration such as +20ms (ns, us, ms or s)");
+    deviation.passes = *passes;
+  } else {
+    deviation.kind = Deviation::Kind::choose;
+    const std::string_view answer = words.back();
+    const auto [end, error] = std::from_chars(answer.data(), answer.data() + answer.size(), deviation.answer);
+    if (error != std::errc{} || end != answer.data() + answer.size()) {
+      return tl::unexpected<std::string>("a choose line ends with the number that was answered");
+    }
+  }
+  if (!is_anchor(words, 1, anchor_end)) {
+    return tl::unexpected<std::string>(
+        "the place must be \"TASK before OPERATION OBJECT #N\", \"TASK in OPERATION OBJECT #N\", \"TASK asks "
+        "WHAT #N\", \"TASK end\" "
+        "or \"- start\"");
+  }
+  deviation.anchor = join(words, 1, anchor_end);
+  return deviation;
+}
+
+}  // namespace
+
+std::string to_string(const Deviation& deviation) {
+  const std::size_t blank = deviation.anchor.find(' ');
+  const std::string place =
+      fmt::format("{:<16} {:<44}", deviation.anchor.substr(0, blank), deviation.anchor.substr(blank + 1));
+  switch (deviation.kind) {
+    case Deviation::Kind::switch_task:
+      return fmt::format("switch    {} to {}", place, deviation.to_task);
+    case Deviation::Kind::pass_time:
+      return fmt::format("time      {} +{}", place, to_text(deviation.passes));
+    case Deviation::Kind::stall:
+      return fmt::format("stall     {} +{}", place, to_text(deviation.passes));
+    case Deviation::Kind::choose:
+      return fmt::format("choose    {} {}", place, deviation.answer);
+  }
+  return {};
+}
+
+std::string to_string(const Schedule& schedule) {
+  std::string message = schedule.message;
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::string text =
+      fmt::format("{}\nscenario  {}\nmemory    {}\noutcome   {}{}{}\n", header, schedule.scenario,
+                  only_memory, to_string(schedule.outcome), message.empty() ? "" : ": ", message);
+  for (const Deviation& deviation : schedule.deviations) text += to_string(deviation) + "\n";
+  return text;
+}
+
+tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
+  Schedule schedule;
+  bool header_seen = false;
+  std::size_t number = 0;
+  const auto error = [&number](std::string reason) {
+    return tl::unexpected(ScheduleError{.line = number, .reason = std::move(reason)});
+  };
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const auto words = words_of(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    if (!header_seen) {
+      if (join(words, 0, words.size()) != header)
+        return error(fmt::format("a schedule begins with \"{}\"", header));
+      header_seen = true;
+    } else if (words.front() == "scenario") {
+      if (words.size() != 2) return error("a scenario line names one scenario");
+      schedule.scenario = words[1];
+    } else if (words.front() == "memory") {
+      if (words.size() != 2 || words[1] != only_memory)
+        return error("the only memory model there is, is \"sc\"");
+    } else if (words.front() == "outcome") {
+      const std::string_view rest = rest_after_first_word(line);
+      const std::size_t colon = std::min(rest.find(':'), rest.size());
+      const auto kind = parse_outcome_kind(rest.substr(0, colon));
+      if (!kind) return error(fmt::format("no outcome is called \"{}\"", rest.substr(0, colon)));
+      schedule.outcome = *kind;
+      schedule.message = colon == rest.size()
+                             ? ""
+                             : rest.substr(std::min(rest.find_first_not_of(' ', colon + 1), rest.size()));
+    } else if (words.front() == "switch" || words.front() == "time" || words.front() == "stall" ||
+               words.front() == "choose") {
+      auto deviation = parse_deviation(words);
+      if (!deviation) return error(std::move(deviation.error()));
+      deviation->line = number;
+      schedule.deviations.push_back(std::move(*deviation));
+    } else {
+      return error(
+          fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, outcome, switch, "
+                      "time, stall, choose",
+                      words.front()));
+    }
+  }
+  number = number == 0 ? 1 : number;
+  if (!header_seen) return error(fmt::format("the file is empty; a schedule begins with \"{}\"", header));
+  if (schedule.scenario.empty()) return error("no line says which scenario this is a schedule of");
+  return schedule;
+}
+
+}  // namespace ltsim

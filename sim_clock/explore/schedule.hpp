@@ -1,0 +1,73 @@
+// The choices of one execution, as deviations from the default, in a text file that survives a rebuild.
+//
+//   ltsim schedule 1
+//   scenario  paper/time-out
+//   memory    sc
+//   outcome   invariant: I1: the answer to request 1 was delivered for request 2
+//   switch    kernel/main    before atomic_load segment.state #3    to emulator/main
+//   time      kernel/main    before clock_read - #2                 +20ms
+//   stall     emulator/main  before atomic_store segment.state #1   +150ms
+//   choose    kernel/main    asks delay #1                          3
+//
+// The default: the running task goes on until it blocks, then the task with the lowest number that can run; a
+// task that yields lets the next one run; time passes only when nobody can run; the scenario's questions are
+// answered with 0. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
+// task itself and lets the others go on.
+//
+// A line is anchored to the step at which its choice was made, by names and not by step numbers: which task,
+// before ("before") or blocked in ("in") which operation on which object, for the how-many-eth time of that
+// task. "end" is the end of a task, "- start" the begin of the world. '#' at the begin of a line starts a
+// comment.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "sim_clock/check/outcome.hpp"
+#include "sim_clock/clock/virtual_clock.hpp"
+
+namespace ltsim {
+
+struct Deviation {
+  enum class Kind : std::uint8_t { switch_task, pass_time, stall, choose };
+
+  Kind kind = Kind::switch_task;
+  std::string anchor;      ///< "kernel/main before sem_wait handoff #2"
+  std::string to_task;     ///< switch_task: "emulator/main"
+  SimTime passes{0};       ///< pass_time, stall
+  std::size_t answer = 0;  ///< choose
+  std::size_t line = 0;    ///< where it stands in its file, from 1; 0: not from a file
+
+  /// Equal as choices: the line does not matter.
+  bool operator==(const Deviation& other) const noexcept {
+    return kind == other.kind && anchor == other.anchor && to_task == other.to_task &&
+           passes == other.passes && answer == other.answer;
+  }
+};
+
+/// One line of a schedule file, without the line's end.
+[[nodiscard]] std::string to_string(const Deviation& deviation);
+
+struct Schedule {
+  std::string scenario;
+  OutcomeKind outcome = OutcomeKind::passed;
+  std::string message;  ///< of the outcome; one line
+  std::vector<Deviation> deviations;
+};
+
+/// The file's text.
+[[nodiscard]] std::string to_string(const Schedule& schedule);
+
+struct ScheduleError {
+  std::size_t line = 0;  ///< from 1
+  std::string reason;    ///< what is wrong and what would be right
+};
+
+[[nodiscard]] tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text);
+
+}  // namespace ltsim

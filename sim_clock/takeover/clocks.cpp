@@ -1,0 +1,91 @@
+// Clocks, sleeping and sched_yield(2).
+
+#include <sched.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+
+#include "sim_clock/takeover/next.hpp"
+#include "sim_clock/world/world.hpp"
+
+using ltsim::current_task;
+
+namespace {
+
+/// @return 0 or EINVAL
+int sleep_for(std::chrono::nanoseconds duration) noexcept {
+  ltsim::World& world = *current_task->world;
+  world.sleep_until(world.now() + duration);
+  return 0;
+}
+
+bool is_valid(const timespec& time) noexcept {
+  return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < 1'000'000'000;
+}
+
+/// Longer sleeps than the clock can count are cut: 200 years.
+std::chrono::nanoseconds to_duration(const timespec& time) noexcept {
+  constexpr time_t seconds_max = 200LL * 365 * 24 * 3600;
+  return std::chrono::seconds{time.tv_sec < seconds_max ? time.tv_sec : seconds_max} +
+         std::chrono::nanoseconds{time.tv_nsec};
+}
+
+}  // namespace
+
+extern "C" int clock_gettime(clockid_t clock, timespec* into) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(clock_gettime)(clock, into);
+  *into = current_task->world->read_clock(clock);
+  return 0;
+}
+
+extern "C" int gettimeofday(timeval* into, void* zone) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(gettimeofday)(into, zone);
+  const timespec time = current_task->world->read_clock(CLOCK_REALTIME);
+  *into = {.tv_sec = time.tv_sec, .tv_usec = time.tv_nsec / 1000};
+  return 0;
+}
+
+extern "C" time_t time(time_t* into) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(time)(into);
+  const time_t seconds = current_task->world->read_clock(CLOCK_REALTIME).tv_sec;
+  if (into != nullptr) *into = seconds;
+  return seconds;
+}
+
+extern "C" int nanosleep(const timespec* duration, timespec* remaining) {
+  if (current_task == nullptr) return LTSIM_NEXT(nanosleep)(duration, remaining);
+  if (!is_valid(*duration)) {
+    errno = EINVAL;
+    return -1;
+  }
+  return sleep_for(to_duration(*duration));
+}
+
+extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* remaining) {
+  if (current_task == nullptr) return LTSIM_NEXT(clock_nanosleep)(clock, flags, time, remaining);
+  if (!is_valid(*time)) return EINVAL;
+  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(to_duration(*time));
+  ltsim::World& world = *current_task->world;
+  world.sleep_until(world.to_sim_time(clock, *time));
+  return 0;
+}
+
+extern "C" int usleep(useconds_t microseconds) {
+  if (current_task == nullptr) return LTSIM_NEXT(usleep)(microseconds);
+  return sleep_for(std::chrono::microseconds{microseconds});
+}
+
+extern "C" unsigned sleep(unsigned seconds) {
+  if (current_task == nullptr) return LTSIM_NEXT(sleep)(seconds);
+  sleep_for(std::chrono::seconds{seconds});
+  return 0;
+}
+
+extern "C" int sched_yield() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(sched_yield)();
+  current_task->world->scheduler().point({.kind = ltsim::OperationKind::yield});
+  return 0;
+}

@@ -1,0 +1,75 @@
+// Plain and volatile loads and stores, as the compiler announces them with -fsanitize=thread. An access to a
+// shared segment by a simulated task is a scheduling point; every other one returns at once.
+//
+// The names and signatures are the interface between the compilers and the sanitizer's runtime: GCC,
+// gcc/sanitizer.def; LLVM, lib/Transforms/Instrumentation/ThreadSanitizer.cpp. The program is not linked with
+// that runtime.
+
+#include <cstddef>
+
+#include "sim_clock/world/world.hpp"
+
+namespace {
+
+using ltsim::OperationKind;
+using ltsim::Segments;
+
+/// Out of line, so that the announcement of an unshared access is a subtraction, a comparison and a return.
+[[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes,
+                                     OperationKind kind) noexcept {
+  ltsim::Task* const self = ltsim::current_task;
+  if (self == nullptr) return;
+  const auto place = self->world->segments().locate(address);
+  self->world->scheduler().point({.kind = kind,
+                                  .bytes = static_cast<std::uint8_t>(bytes),
+                                  .object = place.object,
+                                  .offset = place.offset});
+}
+
+inline void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+  if (Segments::contains(address)) [[unlikely]]
+    shared_access(address, bytes, kind);
+}
+
+/// A range that the compiler copies or fills itself: one scheduling point per eight bytes, all before the
+/// first byte moves.
+inline void access_range(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+  if (!Segments::contains(address)) [[likely]]
+    return;
+  constexpr std::size_t piece = 8;
+  for (std::size_t at = 0; at < bytes; at += piece) {
+    shared_access(static_cast<const volatile char*>(address) + at, bytes - at < piece ? bytes - at : piece,
+                  kind);
+  }
+}
+
+}  // namespace
+
+#define LTSIM_ACCESSES(bytes)                                                                               \
+  extern "C" void __tsan_read##bytes(void* p) { access(p, bytes, OperationKind::read); }                    \
+  extern "C" void __tsan_write##bytes(void* p) { access(p, bytes, OperationKind::write); }                  \
+  extern "C" void __tsan_unaligned_read##bytes(void* p) { access(p, bytes, OperationKind::read); }          \
+  extern "C" void __tsan_unaligned_write##bytes(void* p) { access(p, bytes, OperationKind::write); }        \
+  extern "C" void __tsan_volatile_read##bytes(void* p) { access(p, bytes, OperationKind::read); }           \
+  extern "C" void __tsan_volatile_write##bytes(void* p) { access(p, bytes, OperationKind::write); }         \
+  extern "C" void __tsan_unaligned_volatile_read##bytes(void* p) { access(p, bytes, OperationKind::read); } \
+  extern "C" void __tsan_unaligned_volatile_write##bytes(void* p) { access(p, bytes, OperationKind::write); }
+
+LTSIM_ACCESSES(1)
+LTSIM_ACCESSES(2)
+LTSIM_ACCESSES(4)
+LTSIM_ACCESSES(8)
+LTSIM_ACCESSES(16)
+
+extern "C" void __tsan_read_range(void* p, std::size_t bytes) { access_range(p, bytes, OperationKind::read); }
+extern "C" void __tsan_write_range(void* p, std::size_t bytes) {
+  access_range(p, bytes, OperationKind::write);
+}
+
+// Announced too, and of no interest here: virtual table pointers, function entry and exit, the runtime's
+// start.
+extern "C" void __tsan_vptr_update(void** /*vptr*/, void* /*value*/) {}
+extern "C" void __tsan_vptr_read(void** /*vptr*/) {}
+extern "C" void __tsan_func_entry(void* /*caller*/) {}
+extern "C" void __tsan_func_exit() {}
+extern "C" void __tsan_init() {}

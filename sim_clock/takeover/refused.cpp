@@ -1,0 +1,105 @@
+// Calls that would let the host's time, scheduler or other processes into the simulated world and that it
+// does not simulate. In a task each ends the execution with outcome "unsupported" and its name; outside they
+// are the real ones.
+
+#include <dlfcn.h>
+
+#include <fmt/format.h>
+
+#include "sim_clock/world/world.hpp"
+
+namespace {
+
+void refuse(const char* name) noexcept {
+  ltsim::World& world = *ltsim::current_task->world;
+  world.unsupported(
+      fmt::format("{} called {}, which ltsim does not simulate", ltsim::current_task->name, name));
+}
+
+}  // namespace
+
+// Every function here takes at most six integer or pointer arguments, so the x86-64 calling convention lets
+// one shape pass them all on. The assembler name keeps it apart from libc's own declaration.
+#define LTSIM_REFUSED(name)                                                                      \
+  extern "C" long refused_##name(long, long, long, long, long, long) noexcept asm(#name);        \
+  extern "C" long refused_##name(long a, long b, long c, long d, long e, long f) noexcept {      \
+    if (ltsim::current_task != nullptr) refuse(#name);                                           \
+    static auto* const next =                                                                    \
+        reinterpret_cast<long (*)(long, long, long, long, long, long)>(dlsym(RTLD_NEXT, #name)); \
+    return next(a, b, c, d, e, f);                                                               \
+  }
+
+LTSIM_REFUSED(pthread_rwlock_rdlock)
+LTSIM_REFUSED(pthread_rwlock_wrlock)
+LTSIM_REFUSED(pthread_rwlock_tryrdlock)
+LTSIM_REFUSED(pthread_rwlock_trywrlock)
+LTSIM_REFUSED(pthread_rwlock_timedrdlock)
+LTSIM_REFUSED(pthread_rwlock_timedwrlock)
+LTSIM_REFUSED(pthread_rwlock_clockrdlock)
+LTSIM_REFUSED(pthread_rwlock_clockwrlock)
+LTSIM_REFUSED(pthread_rwlock_unlock)
+LTSIM_REFUSED(pthread_spin_lock)
+LTSIM_REFUSED(pthread_spin_trylock)
+LTSIM_REFUSED(pthread_spin_unlock)
+LTSIM_REFUSED(pthread_barrier_wait)
+LTSIM_REFUSED(pthread_cancel)
+LTSIM_REFUSED(pthread_exit)
+LTSIM_REFUSED(pthread_kill)
+LTSIM_REFUSED(pthread_key_create)
+LTSIM_REFUSED(pthread_setspecific)
+LTSIM_REFUSED(pthread_tryjoin_np)
+LTSIM_REFUSED(pthread_timedjoin_np)
+LTSIM_REFUSED(pthread_clockjoin_np)
+LTSIM_REFUSED(pthread_mutex_consistent)
+LTSIM_REFUSED(thrd_create)
+LTSIM_REFUSED(mtx_lock)
+LTSIM_REFUSED(cnd_wait)
+LTSIM_REFUSED(fork)
+LTSIM_REFUSED(execve)
+LTSIM_REFUSED(posix_spawn)
+LTSIM_REFUSED(system)
+LTSIM_REFUSED(wait)
+LTSIM_REFUSED(waitpid)
+LTSIM_REFUSED(kill)
+LTSIM_REFUSED(alarm)
+LTSIM_REFUSED(setitimer)
+LTSIM_REFUSED(timer_create)
+LTSIM_REFUSED(timerfd_create)
+LTSIM_REFUSED(pause)
+LTSIM_REFUSED(sigwait)
+LTSIM_REFUSED(sigwaitinfo)
+LTSIM_REFUSED(sigtimedwait)
+LTSIM_REFUSED(sigsuspend)
+LTSIM_REFUSED(poll)
+LTSIM_REFUSED(ppoll)
+LTSIM_REFUSED(select)
+LTSIM_REFUSED(pselect)
+LTSIM_REFUSED(epoll_wait)
+LTSIM_REFUSED(epoll_pwait)
+LTSIM_REFUSED(eventfd)
+LTSIM_REFUSED(pipe)
+LTSIM_REFUSED(socket)
+LTSIM_REFUSED(socketpair)
+LTSIM_REFUSED(accept)
+LTSIM_REFUSED(connect)
+LTSIM_REFUSED(recv)
+LTSIM_REFUSED(send)
+LTSIM_REFUSED(msgget)
+LTSIM_REFUSED(semget)
+LTSIM_REFUSED(semop)
+LTSIM_REFUSED(shmget)
+LTSIM_REFUSED(shmat)
+LTSIM_REFUSED(mq_open)
+LTSIM_REFUSED(flock)
+LTSIM_REFUSED(lockf)
+LTSIM_REFUSED(mremap)
+LTSIM_REFUSED(clock)
+LTSIM_REFUSED(times)
+LTSIM_REFUSED(getrusage)
+LTSIM_REFUSED(clock_settime)
+LTSIM_REFUSED(settimeofday)
+LTSIM_REFUSED(getloadavg)
+LTSIM_REFUSED(sched_getcpu)
+LTSIM_REFUSED(getentropy)
+LTSIM_REFUSED(rand)
+LTSIM_REFUSED(random)

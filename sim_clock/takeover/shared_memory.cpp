@@ -1,0 +1,83 @@
+// shm_open(3), and the file calls on what it returns. Other descriptors are real: only those of shared memory
+// objects are simulated.
+//
+// A scenario may destroy objects of the code under test after the run, outside any task. They then close and
+// unmap what only existed in the world: that does nothing.
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "sim_clock/takeover/next.hpp"
+#include "sim_clock/world/world.hpp"
+
+using ltsim::current_task;
+using ltsim::OperationKind;
+using ltsim::Segments;
+
+namespace {
+
+void point(OperationKind kind) noexcept { current_task->world->scheduler().point({.kind = kind}); }
+
+bool is_simulated(int descriptor) noexcept {
+  return current_task != nullptr && Segments::is_descriptor(descriptor);
+}
+
+}  // namespace
+
+extern "C" int shm_open(const char* name, int flags, mode_t mode) {
+  if (current_task == nullptr) return LTSIM_NEXT(shm_open)(name, flags, mode);
+  point(OperationKind::shm_open);
+  return current_task->world->segments().open(name, flags);
+}
+
+extern "C" int shm_unlink(const char* name) {
+  if (current_task == nullptr) return LTSIM_NEXT(shm_unlink)(name);
+  point(OperationKind::shm_unlink);
+  return current_task->world->segments().unlink(name);
+}
+
+extern "C" int ftruncate(int descriptor, off_t bytes) noexcept {
+  if (!is_simulated(descriptor)) return LTSIM_NEXT(ftruncate)(descriptor, bytes);
+  point(OperationKind::shm_resize);
+  return current_task->world->segments().resize(descriptor, bytes);
+}
+
+extern "C" int fstat(int descriptor, struct stat* into) noexcept {
+  if (!is_simulated(descriptor)) return LTSIM_NEXT(fstat)(descriptor, into);
+  point(OperationKind::shm_open);
+  return current_task->world->segments().status(descriptor, *into);
+}
+
+extern "C" int fchmod(int descriptor, mode_t mode) noexcept {
+  if (!is_simulated(descriptor)) return LTSIM_NEXT(fchmod)(descriptor, mode);
+  return 0;  // the simulated world has one user
+}
+
+extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flags, int descriptor,
+                      off_t offset) noexcept {
+  if (!is_simulated(descriptor))
+    return LTSIM_NEXT(mmap)(address, bytes, protection, flags, descriptor, offset);
+  point(OperationKind::shm_map);
+  return current_task->world->segments().map(bytes, flags, descriptor, offset);
+}
+
+extern "C" int munmap(void* address, std::size_t bytes) noexcept {
+  if (!Segments::contains(address)) return LTSIM_NEXT(munmap)(address, bytes);
+  if (current_task == nullptr) return 0;
+  point(OperationKind::shm_unmap);
+  return current_task->world->segments().unmap(address, bytes);
+}
+
+extern "C" int msync(void* address, std::size_t bytes, int flags) {
+  if (current_task == nullptr || !Segments::contains(address))
+    return LTSIM_NEXT(msync)(address, bytes, flags);
+  return 0;  // there is no file behind it
+}
+
+extern "C" int close(int descriptor) {
+  if (!Segments::is_descriptor(descriptor)) return LTSIM_NEXT(close)(descriptor);
+  if (current_task == nullptr) return 0;
+  return current_task->world->segments().close(descriptor);
+}

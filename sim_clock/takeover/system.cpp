@@ -1,0 +1,93 @@
+// What differs from machine to machine and from run to run, and the raw system calls that libstdc++ makes.
+
+#include <linux/futex.h>
+#include <sys/random.h>
+#include <sys/syscall.h>
+#include <sys/sysinfo.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdarg>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "sim_clock/explore/random_generator.hpp"
+#include "sim_clock/takeover/next.hpp"
+#include "sim_clock/world/world.hpp"
+
+using ltsim::current_task;
+
+namespace {
+
+constexpr pid_t first_process_id = 1000;
+constexpr int processors = 2;
+
+/// futex(2) as std::atomic::wait, std::counting_semaphore and the guards of static variables use it.
+long futex(std::uint32_t* word, int operation, std::uint32_t value, const timespec* timeout) noexcept {
+  ltsim::World& world = *current_task->world;
+  switch (operation & ~(FUTEX_PRIVATE_FLAG | FUTEX_CLOCK_REALTIME)) {
+    case FUTEX_WAIT:  // the time-out is relative
+      return world.mutexes().futex_wait(word, value,
+                                        timeout == nullptr
+                                            ? ltsim::VirtualClock::never
+                                            : world.now() + std::chrono::seconds{timeout->tv_sec} +
+                                                  std::chrono::nanoseconds{timeout->tv_nsec});
+    case FUTEX_WAIT_BITSET:  // absolute
+      return world.mutexes().futex_wait(
+          word, value,
+          timeout == nullptr
+              ? ltsim::VirtualClock::never
+              : world.to_sim_time((operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC,
+                                  *timeout));
+    case FUTEX_WAKE:
+      return world.mutexes().futex_wake(word, value);
+    default:
+      world.unsupported(fmt::format("futex(2) with operation {}", operation));
+      return -1;
+  }
+}
+
+}  // namespace
+
+extern "C" pid_t getpid() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(getpid)();
+  return first_process_id + current_task->process;
+}
+
+extern "C" int get_nprocs() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(get_nprocs)();
+  return processors;
+}
+
+// The same bytes in every execution: chance comes from the strategy alone. A scenario that wants other bytes
+// asks World::choose().
+extern "C" ssize_t getrandom(void* buffer, std::size_t bytes, unsigned flags) {
+  if (current_task == nullptr) return LTSIM_NEXT(getrandom)(buffer, bytes, flags);
+  ltsim::RandomGenerator generator{current_task->id};
+  for (std::size_t i = 0; i < bytes; ++i)
+    static_cast<unsigned char*>(buffer)[i] = static_cast<unsigned char>(generator.next());
+  return static_cast<ssize_t>(bytes);
+}
+
+extern "C" long syscall(long number, ...) noexcept {
+  va_list list;
+  va_start(list, number);
+  long arguments[6];
+  for (long& argument : arguments) argument = va_arg(list, long);
+  va_end(list);
+  if (current_task == nullptr) {
+    return LTSIM_NEXT(syscall)(number, arguments[0], arguments[1], arguments[2], arguments[3], arguments[4],
+                               arguments[5]);
+  }
+  switch (number) {
+    case SYS_futex:
+      return futex(reinterpret_cast<std::uint32_t*>(arguments[0]), static_cast<int>(arguments[1]),
+                   static_cast<std::uint32_t>(arguments[2]), reinterpret_cast<const timespec*>(arguments[3]));
+    case SYS_gettid:
+      return first_process_id + 100 * (current_task->process + 1) + current_task->id;
+    default:
+      current_task->world->unsupported(fmt::format("syscall(2) with number {}", number));
+      return -1;
+  }
+}

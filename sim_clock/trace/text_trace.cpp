@@ -1,0 +1,72 @@
+#include "sim_clock/trace/text_trace.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "sim_clock/world/world.hpp"
+
+namespace ltsim {
+namespace {
+
+bool changes_memory(OperationKind kind) noexcept {
+  return kind == OperationKind::write || kind == OperationKind::atomic_store ||
+         kind == OperationKind::atomic_exchange || kind == OperationKind::atomic_update;
+}
+
+}  // namespace
+
+void TextTrace::arrives(const Task& /*task*/, const Operation& /*operation*/) noexcept { finish_write(); }
+
+void TextTrace::performs(const Task& task, const Operation& operation) noexcept {
+  finish_write();
+  line(task.name, to_string(operation.kind), world_.objects().place(operation));
+  if (!is_memory_access(operation.kind) || operation.object == 0) return;
+  if (changes_memory(operation.kind)) {
+    unfinished_write_ = operation;
+    write_is_unfinished_ = true;
+  } else {
+    text_.insert(text_.size() - 1, fmt::format(" = {}", world_.segments().value_at(operation)));
+  }
+}
+
+void TextTrace::blocks(const Task& task) noexcept {
+  finish_write();
+  line(task.name, "waits",
+       fmt::format("in {} {}", to_string(task.pending.kind), world_.objects().name(task.pending)));
+}
+
+void TextTrace::ends(const Task& task) noexcept {
+  finish_write();
+  line(task.name, "ends", "");
+}
+
+void TextTrace::asks(std::string_view what) noexcept {
+  finish_write();
+  line("", "asks", what);
+}
+
+void TextTrace::notes(std::string_view text) noexcept {
+  finish_write();
+  line("", "", text);
+}
+
+std::string TextTrace::text() {
+  finish_write();
+  return text_;
+}
+
+void TextTrace::line(std::string_view task, std::string_view what, std::string_view place) {
+  const auto now = world_.now();
+  text_ += fmt::format("{:>14.3f}us  {:<18} {:<15} {}\n", static_cast<double>(now.count()) / 1000.0, task,
+                       what, place);
+}
+
+void TextTrace::finish_write() {
+  if (!write_is_unfinished_) return;
+  write_is_unfinished_ = false;
+  text_.insert(text_.size() - 1, fmt::format(" := {}", world_.segments().value_at(unfinished_write_)));
+}
+
+}  // namespace ltsim

@@ -1,0 +1,192 @@
+#include "sim_clock/world/mutexes.hpp"
+
+#include <cerrno>
+
+#include <fmt/format.h>
+
+#include "sim_clock/world/segments.hpp"
+#include "sim_clock/world/world.hpp"
+
+namespace ltsim {
+
+/// Our use of the bytes of a pthread_mutex_t. `kind` is glibc's own field:
+/// sysdeps/x86/nptl/bits/struct_mutex.h.
+struct Mutexes::State {
+  std::uint32_t owner_plus_one;  // 0: free
+  std::uint32_t locked_count;    // of a recursive mutex
+  std::uint64_t execution;       // in which the fields around it are valid
+  std::int32_t kind;
+  ObjectId object;
+  std::uint64_t unused[2];
+};
+
+namespace {
+
+constexpr std::int32_t kind_mask = 3;  // glibc keeps robustness, sharing and protocol in higher bits
+
+Operation operation_on(OperationKind kind, ObjectId object = 0) noexcept {
+  return {.kind = kind, .object = object};
+}
+
+/// Conditions and futex words share their addresses with nothing else that is waited for, but a mutex may be
+/// the first member of a structure whose address is waited for too.
+WaitKey mutex_key(const void* address) noexcept {
+  return Segments::canonical(address) | std::uint64_t{1} << 61U;
+}
+
+}  // namespace
+
+void Mutexes::reset() noexcept { mutexes_count_ = 0; }
+
+Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
+  static_assert(sizeof(State) == sizeof(pthread_mutex_t));
+  static_assert(offsetof(State, kind) == offsetof(pthread_mutex_t, __data.__kind));
+  auto& state = *reinterpret_cast<State*>(mutex);
+  if (state.execution != world_.execution_number()) {
+    state.owner_plus_one = 0;
+    state.locked_count = 0;
+    state.execution = world_.execution_number();
+    const GhostScope ghost;
+    state.object = world_.objects().add(fmt::format("mutex-{}", ++mutexes_count_));
+  }
+  return state;
+}
+
+int Mutexes::lock(pthread_mutex_t* mutex) noexcept {
+  State& state = resolve(mutex);
+  return acquire(state, mutex, OperationKind::mutex_lock, VirtualClock::never);
+}
+
+int Mutexes::timed_lock(pthread_mutex_t* mutex, SimTime deadline) noexcept {
+  State& state = resolve(mutex);
+  return acquire(state, mutex, OperationKind::mutex_timedlock, deadline);
+}
+
+int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
+  State& state = resolve(mutex);
+  world_.scheduler().point(operation_on(OperationKind::mutex_trylock, state.object));
+  const std::uint32_t self = current_task->id + 1U;
+  if (state.owner_plus_one == self && (state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
+    ++state.locked_count;
+    return 0;
+  }
+  if (state.owner_plus_one != 0) return EBUSY;
+  state.owner_plus_one = self;
+  state.locked_count = 1;
+  return 0;
+}
+
+int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept {
+  world_.scheduler().point(operation_on(kind, state.object));
+  const std::uint32_t self = current_task->id + 1U;
+  if (state.owner_plus_one == self) {
+    if ((state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
+      ++state.locked_count;
+      return 0;
+    }
+    if ((state.kind & kind_mask) == PTHREAD_MUTEX_ERRORCHECK) return EDEADLK;
+  }
+  while (state.owner_plus_one != 0) {
+    if (world_.scheduler().block(mutex_key(address), deadline) == Scheduler::Wake::timed_out &&
+        state.owner_plus_one != 0) {
+      return ETIMEDOUT;
+    }
+  }
+  state.owner_plus_one = self;
+  state.locked_count = 1;
+  return 0;
+}
+
+int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
+  State& state = resolve(mutex);
+  world_.scheduler().point(operation_on(OperationKind::mutex_unlock, state.object));
+  if (state.owner_plus_one != current_task->id + 1U) {
+    if ((state.kind & kind_mask) != PTHREAD_MUTEX_NORMAL) return EPERM;
+    const GhostScope ghost;
+    world_.scheduler().fail(OutcomeKind::assertion,
+                            fmt::format("{} is unlocked by a task that does not hold it",
+                                        world_.objects().object_name(state.object)));
+  }
+  if (--state.locked_count == 0) release(state, mutex);
+  return 0;
+}
+
+int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
+  State& state = resolve(mutex);
+  if (state.owner_plus_one != 0) return EBUSY;
+  state.execution = 0;
+  return 0;
+}
+
+void Mutexes::release(State& state, const void* address) noexcept {
+  state.owner_plus_one = 0;
+  world_.scheduler().wake(mutex_key(address), 1);
+}
+
+int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {
+  return wait_until(condition, mutex, OperationKind::cond_wait, VirtualClock::never);
+}
+
+int Mutexes::timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, SimTime deadline) noexcept {
+  return wait_until(condition, mutex, OperationKind::cond_timedwait, deadline);
+}
+
+int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
+                        SimTime deadline) noexcept {
+  State& state = resolve(mutex);
+  world_.scheduler().point(operation_on(kind, state.object));
+  const std::uint32_t locked_count = state.locked_count;
+  release(state, mutex);
+  const auto wake = world_.scheduler().block(Segments::canonical(condition), deadline);
+  while (state.owner_plus_one != 0) world_.scheduler().block(mutex_key(mutex), VirtualClock::never);
+  state.owner_plus_one = current_task->id + 1U;
+  state.locked_count = locked_count;
+  return wake == Scheduler::Wake::timed_out ? ETIMEDOUT : 0;
+}
+
+int Mutexes::signal(pthread_cond_t* condition) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::cond_signal));
+  world_.scheduler().wake(Segments::canonical(condition), 1);
+  return 0;
+}
+
+int Mutexes::broadcast(pthread_cond_t* condition) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::cond_broadcast));
+  world_.scheduler().wake(Segments::canonical(condition), tasks_max);
+  return 0;
+}
+
+int Mutexes::once(pthread_once_t* control, void (*initialise)()) noexcept {
+  // PTHREAD_ONCE_INIT is 0. What was initialised in an earlier execution stays initialised, like every
+  // global.
+  constexpr int running = 1;
+  constexpr int done = 2;
+  world_.scheduler().point(operation_on(OperationKind::once));
+  while (*control == running) world_.scheduler().block(Segments::canonical(control), VirtualClock::never);
+  if (*control == done) return 0;
+  *control = running;
+  initialise();
+  *control = done;
+  world_.scheduler().wake(Segments::canonical(control), tasks_max);
+  return 0;
+}
+
+int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::futex_wait));
+  if (*word != expected) {
+    errno = EAGAIN;
+    return -1;
+  }
+  if (world_.scheduler().block(Segments::canonical(word), deadline) == Scheduler::Wake::timed_out) {
+    errno = ETIMEDOUT;
+    return -1;
+  }
+  return 0;
+}
+
+int Mutexes::futex_wake(const std::uint32_t* word, std::size_t count_max) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::futex_wake));
+  return static_cast<int>(world_.scheduler().wake(Segments::canonical(word), count_max));
+}
+
+}  // namespace ltsim

@@ -1,0 +1,63 @@
+// Mutexes, conditions, once-initialisation and futex words of the simulated world.
+//
+// The state of a mutex lies in the pthread_mutex_t itself, so that one in a shared segment works across
+// processes and a statically initialised one (all zeros) needs no call. The kind (normal, recursive,
+// error-checking) stays where pthread_mutex_init put it. Conditions hold no state: their waiters are known by
+// the address.
+//
+// Not here: robust mutexes whose owner dies (no simulated process dies yet), priority protocols (accepted,
+// without effect).
+#pragma once
+
+#include <pthread.h>
+
+#include <cstdint>
+#include <ctime>
+#include <string>
+
+#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/operation.hpp"
+
+namespace ltsim {
+
+class World;
+
+class Mutexes {
+ public:
+  explicit Mutexes(World& world) noexcept : world_(world) {}
+  void reset() noexcept;
+
+  // The calls, for the running task; they return 0 or an error number as POSIX.1-2017 lists them.
+  int lock(pthread_mutex_t* mutex) noexcept;
+  int try_lock(pthread_mutex_t* mutex) noexcept;
+  int timed_lock(pthread_mutex_t* mutex, SimTime deadline) noexcept;
+  int unlock(pthread_mutex_t* mutex) noexcept;
+  int destroy(pthread_mutex_t* mutex) noexcept;
+
+  int wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept;
+  int timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, SimTime deadline) noexcept;
+  int signal(pthread_cond_t* condition) noexcept;
+  int broadcast(pthread_cond_t* condition) noexcept;
+
+  int once(pthread_once_t* control, void (*initialise)()) noexcept;
+
+  /// FUTEX_WAIT: blocks while the word still has the value `expected`.
+  /// @return 0; or -1 with errno EAGAIN or ETIMEDOUT
+  int futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline) noexcept;
+  /// FUTEX_WAKE. @return tasks woken
+  int futex_wake(const std::uint32_t* word, std::size_t count_max) noexcept;
+
+ private:
+  struct State;
+
+  State& resolve(pthread_mutex_t* mutex) noexcept;
+  int acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept;
+  int wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
+                 SimTime deadline) noexcept;
+  void release(State& state, const void* address) noexcept;
+
+  World& world_;
+  std::uint32_t mutexes_count_ = 0;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,70 @@
+// What a task is about to do at a scheduling point.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace ltsim {
+
+/// The operations of the simulated world that other tasks can notice. The names in to_string() are those of
+/// schedule files and traces: a name once published stays.
+enum class OperationKind : std::uint8_t {
+  read,
+  write,
+  atomic_load,
+  atomic_store,
+  atomic_exchange,
+  atomic_update,
+  sem_open,
+  sem_close,
+  sem_unlink,
+  sem_init,
+  sem_destroy,
+  sem_wait,
+  sem_trywait,
+  sem_timedwait,
+  sem_post,
+  sem_getvalue,
+  mutex_lock,
+  mutex_trylock,
+  mutex_timedlock,
+  mutex_unlock,
+  cond_wait,
+  cond_timedwait,
+  cond_signal,
+  cond_broadcast,
+  futex_wait,
+  futex_wake,
+  once,
+  thread_create,
+  thread_join,
+  thread_end,
+  shm_open,
+  shm_unlink,
+  shm_resize,
+  shm_map,
+  shm_unmap,
+  clock_read,
+  sleep,
+  yield,
+};
+
+[[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
+
+[[nodiscard]] constexpr bool is_memory_access(OperationKind kind) noexcept {
+  return kind <= OperationKind::atomic_update;
+}
+
+/// Number of a named thing of the world: a semaphore, a segment, a mutex; 0 is "no object".
+using ObjectId = std::uint32_t;
+
+struct Operation {
+  OperationKind kind = OperationKind::read;
+  std::uint8_t bytes = 0;    ///< of a memory access, 1 to 16
+  ObjectId object = 0;       ///< what it acts on
+  std::uint32_t offset = 0;  ///< of a memory access: byte within the segment
+
+  bool operator==(const Operation&) const = default;
+};
+
+}  // namespace ltsim

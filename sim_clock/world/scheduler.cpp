@@ -1,0 +1,309 @@
+#include "sim_clock/world/scheduler.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/world.hpp"
+
+namespace ltsim {
+
+constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]] = nullptr;
+
+void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
+  strategy_ = &strategy;
+  listener_ = listener;
+  running_ = nullptr;
+  clock_.reset();
+  runnable_.fill(0);
+  runnable_count_ = 0;
+  stalled_count_ = 0;
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    tasks_[i]->body = nullptr;
+    tasks_[i]->thread_local_destructors.clear();
+  }
+  tasks_count_ = 0;
+  unfinished_count_ = 0;
+  points_ = 0;
+  points_max_ = points_max_default;
+  decisions_ = 0;
+  blocked_ever_ = 0;
+  hash_ = 0;
+  time_is_a_choice_ = true;
+  clock_was_read_ = false;
+  outcome_.kind = OutcomeKind::passed;
+  outcome_.message.clear();
+  idle_checks_.clear();
+}
+
+Task& Scheduler::create_task(ProcessId process, std::string_view name, std::function<void()> body) {
+  if (tasks_count_ == tasks_max) {
+    fail(OutcomeKind::unsupported, fmt::format("more than {} tasks in one world", tasks_max));
+  }
+  if (tasks_count_ == tasks_.size()) {
+    tasks_.push_back(std::make_unique<Task>());
+    tasks_.back()->storage = std::make_unique<TaskStorage>();
+  }
+  Task& task = *tasks_[tasks_count_];
+  task.world = &world_;
+  task.id = static_cast<TaskId>(tasks_count_++);
+  task.process = process;
+  task.timed_out = false;
+  task.detached = false;
+  task.joined = false;
+  task.pending = Operation{};
+  task.name.assign(name);
+  task.body = std::move(body);
+  task.result = nullptr;
+  task.storage->reset();
+  task.context.prepare(task.storage->stack_top(), TaskStorage::stack_bytes, task.storage->thread_pointer(),
+                       &run_task, &task);
+  ++unfinished_count_;
+  make_runnable(task);
+  return task;
+}
+
+void Scheduler::run() {
+  LTSIM_CHECK(current_task == nullptr);
+  if (!outcome_.passed() || tasks_count_ == 0) return;
+  main_context_.adopt_current();
+  const TaskId first = runnable_count_ == 1 ? TaskId{0} : choose_task(runnable_tasks(0));
+  running_ = tasks_[first].get();
+  Context::switch_between(main_context_, running_->context);
+}
+
+void Scheduler::run_task(void* argument) noexcept {
+  Task& self = *static_cast<Task*>(argument);
+  TaskStorage::finish_set_up_of_current();
+  current_task = &self;
+  Scheduler& scheduler = self.world->scheduler();
+  try {
+    self.body();
+    while (!self.thread_local_destructors.empty()) {
+      const auto last = self.thread_local_destructors.back();
+      self.thread_local_destructors.pop_back();
+      last.destroy(last.object);
+    }
+  } catch (const std::exception& exception) {
+    const GhostScope ghost;
+    scheduler.fail(OutcomeKind::crash,
+                   fmt::format("{}: nobody caught the exception \"{}\"", self.name, exception.what()));
+  } catch (...) {
+    const GhostScope ghost;
+    scheduler.fail(OutcomeKind::crash,
+                   fmt::format("{}: nobody caught an exception of an unknown type", self.name));
+  }
+  scheduler.finish_running();
+}
+
+void Scheduler::finish_running() noexcept {
+  Task& self = *running_;
+  self.pending = Operation{.kind = OperationKind::thread_end};
+  self.state = Task::State::finished;
+  make_unrunnable(self);
+  --unfinished_count_;
+  if (listener_ != nullptr) listener_->ends(self);
+  mix(std::uint64_t{self.id} << 32U | 0xffU);
+  wake(World::join_key(self.id), tasks_max);
+  Task* const next = next_after_stop();
+  if (next != nullptr) {
+    switch_to(*next);
+  } else {
+    running_ = nullptr;
+    Context::switch_between(self.context, main_context_);
+  }
+  LTSIM_CHECK(!"a finished task was resumed");
+}
+
+void Scheduler::point(const Operation& operation) noexcept {
+  Task& self = *running_;
+  self.pending = operation;
+  clock_.pass(point_cost);
+  if (++points_ > points_max_) [[unlikely]] {
+    const GhostScope ghost;
+    fail(OutcomeKind::livelock,
+         fmt::format("{} scheduling points and no end; {} is at {} {}", points_max_, self.name,
+                     to_string(operation.kind), world_.objects().name(operation)));
+  }
+  if (listener_ != nullptr) [[unlikely]]
+    listener_->arrives(self, operation);
+  if (clock_.next_deadline() <= clock_.now()) wake_due();
+  if (time_is_a_choice_ && (clock_.any_armed() || clock_was_read_)) choose_slow_moment();
+  if (runnable_count_ > 1) {
+    // Who yields wants somebody else to run: the default is then the next task, and this one comes last.
+    const auto from = static_cast<TaskId>(self.id + (operation.kind == OperationKind::yield ? 1 : 0));
+    const TaskId next = choose_task(runnable_tasks(from));
+    if (next != self.id) switch_to(*tasks_[next]);
+  }
+  mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(operation.kind)} << 40U |
+      std::uint64_t{operation.bytes} << 32U | operation.offset);
+  mix(std::uint64_t{operation.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
+  if (listener_ != nullptr) [[unlikely]]
+    listener_->performs(self, operation);
+}
+
+Scheduler::Wake Scheduler::block(WaitKey key, SimTime deadline) noexcept {
+  Task& self = *running_;
+  self.state = Task::State::blocked;
+  self.wait_key = key;
+  self.blocked_since = blocked_ever_++;
+  self.deadline = deadline;
+  self.timed_out = false;
+  make_unrunnable(self);
+  if (deadline != VirtualClock::never) clock_.arm(deadline, self.id);
+  if (listener_ != nullptr) [[unlikely]]
+    listener_->blocks(self);
+  Task* const next = next_after_stop();
+  if (next != &self) switch_to(*next);
+  return self.timed_out ? Wake::timed_out : Wake::signalled;
+}
+
+std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
+  std::size_t woken = 0;
+  for (; woken < count_max; ++woken) {
+    Task* longest = nullptr;
+    for (std::size_t i = 0; i < tasks_count_; ++i) {
+      Task& task = *tasks_[i];
+      if (task.state != Task::State::blocked || task.wait_key != key) continue;
+      if (longest == nullptr || task.blocked_since < longest->blocked_since) longest = &task;
+    }
+    if (longest == nullptr) break;
+    if (longest->deadline != VirtualClock::never) clock_.cancel(longest->id);
+    make_runnable(*longest);
+  }
+  return woken;
+}
+
+std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept {
+  LTSIM_CHECK(count >= 1 && count <= options_.size());
+  if (count == 1) return 0;
+  if (listener_ != nullptr) listener_->asks(what);
+  for (std::size_t i = 0; i < count; ++i) options_[i] = i;
+  const std::size_t chosen = ask(ChoiceKind::scenario, std::span{options_}.first(count));
+  mix(chosen);
+  return chosen;
+}
+
+void Scheduler::fail(OutcomeKind kind, std::string message) {
+  if (outcome_.passed()) {
+    outcome_.kind = kind;
+    outcome_.message = std::move(message);
+  }
+  if (running_ == nullptr) return;
+  Task& self = *running_;
+  running_ = nullptr;
+  Context::switch_between(self.context, main_context_);
+  LTSIM_CHECK(!"a task of a failed execution was resumed");
+}
+
+Task* Scheduler::next_after_stop() noexcept {
+  if (unfinished_count_ == 0) return nullptr;
+  wake_due();
+  while (runnable_count_ == 0) nobody_can_run();
+  const auto options = runnable_tasks(0);
+  return tasks_[options.size() == 1 ? options[0] : choose_task(options)].get();
+}
+
+void Scheduler::nobody_can_run() noexcept {
+  if (!idle_checks_.empty() && stalled_count_ == 0) {
+    const GhostScope ghost;
+    for (const auto& check : idle_checks_) check();
+  }
+  if (!clock_.any_armed()) {
+    const GhostScope ghost;
+    fail(OutcomeKind::deadlock, describe_waiting());
+  }
+  clock_.pass(std::max(clock_.next_deadline() - clock_.now(), SimTime{0}));
+  wake_due();
+}
+
+TaskId Scheduler::choose_task(std::span<const std::uint64_t> options) noexcept {
+  return static_cast<TaskId>(options[ask(ChoiceKind::task, options)]);
+}
+
+void Scheduler::choose_slow_moment() noexcept {
+  ++decisions_;
+  const SimTime next = clock_.next_deadline();
+  const SlowMoment moment = strategy_->slow_moment(next == VirtualClock::never ? next : next - clock_.now());
+  if (moment.duration == SimTime{0}) return;
+  if (!moment.others_go_on) {
+    clock_.pass(moment.duration);
+    wake_due();
+    return;
+  }
+  Task& self = *running_;
+  self.state = Task::State::stalled;
+  ++stalled_count_;
+  make_unrunnable(self);
+  clock_.arm(clock_.now() + moment.duration, self.id);
+  Task* const other = next_after_stop();
+  if (other != &self) switch_to(*other);
+}
+
+std::size_t Scheduler::ask(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept {
+  ++decisions_;
+  return strategy_->choose(kind, options);
+}
+
+std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
+  std::size_t before = 0;  // runnable tasks with smaller numbers than `from`: they go to the end
+  std::size_t count = 0;
+  for (std::size_t word = 0; word < runnable_.size() && count < runnable_count_; ++word) {
+    for (std::uint64_t bits = runnable_[word]; bits != 0; bits &= bits - 1) {
+      const std::uint64_t id = word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));
+      if (id < from) ++before;
+      options_[count++] = id;
+    }
+  }
+  if (before != 0 && before != count) {
+    std::rotate(options_.begin(), options_.begin() + static_cast<std::ptrdiff_t>(before),
+                options_.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  return std::span{options_}.first(count);
+}
+
+void Scheduler::switch_to(Task& next) noexcept {
+  Task& self = *running_;
+  running_ = &next;
+  Context::switch_between(self.context, next.context);
+}
+
+void Scheduler::wake_due() noexcept {
+  for (TaskId sleeper = clock_.take_due(); sleeper != VirtualClock::no_task; sleeper = clock_.take_due()) {
+    Task& task = *tasks_[sleeper];
+    if (task.state == Task::State::stalled) {
+      --stalled_count_;
+    } else {
+      task.timed_out = true;
+    }
+    make_runnable(task);
+  }
+}
+
+void Scheduler::make_runnable(Task& task) noexcept {
+  task.state = Task::State::runnable;
+  runnable_[task.id / 64] |= std::uint64_t{1} << (task.id % 64);
+  ++runnable_count_;
+}
+
+void Scheduler::make_unrunnable(const Task& task) noexcept {
+  runnable_[task.id / 64] &= ~(std::uint64_t{1} << (task.id % 64));
+  --runnable_count_;
+}
+
+std::string Scheduler::describe_waiting() const {
+  std::string text;
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    const Task& task = *tasks_[i];
+    if (task.state != Task::State::blocked) continue;
+    if (!text.empty()) text += "; ";
+    text += fmt::format("{} waits in {} {}", task.name, to_string(task.pending.kind),
+                        world_.objects().name(task.pending));
+  }
+  return text;
+}
+
+}  // namespace ltsim

@@ -1,0 +1,137 @@
+// Decides which task runs and when time passes: the hot loop.
+//
+// One task runs at a time. At each scheduling point the running task asks the strategy and switches straight
+// to the chosen task, or goes on without any switch. Nothing here allocates, formats or calls the system per
+// scheduling point; tasks, stacks and thread-local storage are pooled from execution to execution.
+//
+// Invariants
+//   I1  exactly one task of a running world runs; it is runnable.
+//   I2  a task that is not runnable is blocked on one key, with at most one timer; or stalled, with one
+//   timer; or finished. I3  two executions whose strategies choose alike have equal trace hashes.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim_clock/check/outcome.hpp"
+#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/explore/strategy.hpp"
+#include "sim_clock/world/step_listener.hpp"
+#include "sim_clock/world/task.hpp"
+
+namespace ltsim {
+
+class Scheduler {
+ public:
+  /// What one scheduling point costs in virtual time: enough that a loop that polls a clock ends.
+  static constexpr SimTime point_cost{100};
+  static constexpr std::uint64_t points_max_default = 1'000'000;
+
+  explicit Scheduler(World& world) noexcept : world_(world) {}
+
+  /// Forgets the last execution and prepares the next.
+  void reset(Strategy& strategy, StepListener* listener) noexcept;
+
+  // --- set-up, by the scenario ---
+
+  /// The task starts to run when the strategy first chooses it.
+  Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
+  void set_points_max(std::uint64_t points) noexcept { points_max_ = points; }
+  /// Whether the strategy may let time pass although somebody could run (default yes).
+  void set_time_is_a_choice(bool yes) noexcept { time_is_a_choice_ = yes; }
+  /// Called, outside the simulated world, each time that every task waits of its own accord, before time
+  /// moves on.
+  void add_idle_check(std::function<void()> check) { idle_checks_.push_back(std::move(check)); }
+
+  /// Runs the tasks until all have finished or the execution has failed. Tasks that have not finished are
+  /// dropped where they stand: nothing is unwound.
+  void run();
+
+  // --- for the running task ---
+
+  /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
+  void point(const Operation& operation) noexcept;
+
+  enum class Wake : std::uint8_t { signalled, timed_out };
+  /// Blocks the running task until wake() for `key`, or until `deadline` (VirtualClock::never: no limit).
+  Wake block(WaitKey key, SimTime deadline) noexcept;
+  /// Wakes up to `count_max` tasks blocked on `key`, longest waiting first.
+  /// @return tasks woken
+  std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
+
+  /// A choice of the scenario: 0 to count - 1.
+  [[nodiscard]] std::size_t choose(std::string_view what, std::size_t count) noexcept;
+
+  /// Time was looked at: from now on it matters when it passes.
+  void clock_was_read() noexcept { clock_was_read_ = true; }
+
+  // --- failing ---
+
+  /// Ends the execution with this outcome; the first one counts. Inside a task it does not return.
+  void fail(OutcomeKind kind, std::string message);
+
+  // --- looking ---
+
+  [[nodiscard]] const Outcome& outcome() const noexcept { return outcome_; }
+  [[nodiscard]] const VirtualClock& clock() const noexcept { return clock_; }
+  [[nodiscard]] std::uint64_t trace_hash() const noexcept { return hash_; }
+  [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+  [[nodiscard]] std::uint64_t decisions() const noexcept { return decisions_; }
+  [[nodiscard]] std::size_t tasks_count() const noexcept { return tasks_count_; }
+  [[nodiscard]] Task& task(TaskId id) noexcept { return *tasks_[id]; }
+  [[nodiscard]] const Task& task(TaskId id) const noexcept { return *tasks_[id]; }
+  [[nodiscard]] StepListener* listener() noexcept { return listener_; }
+
+ private:
+  static void run_task(void* task) noexcept;
+  void finish_running() noexcept;
+  /// The next task after the running one stopped being runnable; null when all have finished.
+  Task* next_after_stop() noexcept;
+  void nobody_can_run() noexcept;
+  TaskId choose_task(std::span<const std::uint64_t> options) noexcept;
+  void choose_slow_moment() noexcept;
+  std::size_t ask(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept;
+  /// Runnable tasks in the order of their numbers, from `from` on and then around.
+  std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept;
+  void switch_to(Task& next) noexcept;
+  void wake_due() noexcept;
+  void make_runnable(Task& task) noexcept;
+  void make_unrunnable(const Task& task) noexcept;
+  [[nodiscard]] std::string describe_waiting() const;
+
+  void mix(std::uint64_t word) noexcept { hash_ = std::rotl((hash_ ^ word) * 0x9e3779b97f4a7c15U, 27); }
+
+  World& world_;
+  Strategy* strategy_ = nullptr;
+  StepListener* listener_ = nullptr;
+  Task* running_ = nullptr;
+  Context main_context_;
+  VirtualClock clock_;
+
+  std::array<std::uint64_t, tasks_max / 64> runnable_{};  // bit = task number
+  std::size_t runnable_count_ = 0;
+  std::size_t stalled_count_ = 0;
+  std::array<std::uint64_t, tasks_max> options_{};
+  std::vector<std::unique_ptr<Task>> tasks_;  // pooled; the first tasks_count_ belong to this execution
+  std::size_t tasks_count_ = 0;
+  std::size_t unfinished_count_ = 0;
+
+  std::uint64_t points_ = 0;
+  std::uint64_t points_max_ = points_max_default;
+  std::uint64_t decisions_ = 0;
+  std::uint64_t blocked_ever_ = 0;
+  std::uint64_t hash_ = 0;
+  bool time_is_a_choice_ = true;
+  bool clock_was_read_ = false;
+  Outcome outcome_;
+  std::vector<std::function<void()>> idle_checks_;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,227 @@
+#include "sim_clock/world/segments.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/world.hpp"
+
+// This file calls mmap(2) and its kind for the simulator itself: with current_task set they would be the
+// simulated ones.
+namespace ltsim {
+
+Segments::Segments(World& world) : world_(world) {
+  memory_ = memfd_create("ltsim-segments", MFD_CLOEXEC);
+  LTSIM_CHECK(memory_ >= 0);
+  LTSIM_CHECK(ftruncate(memory_, static_cast<off_t>(segments_max << window_shift)) == 0);
+  void* const all =
+      mmap(nullptr, segments_max << window_shift, PROT_READ | PROT_WRITE, MAP_SHARED, memory_, 0);
+  LTSIM_CHECK(all != MAP_FAILED);
+  all_ = static_cast<std::byte*>(all);
+  static const void* const range =
+      mmap(reinterpret_cast<void*>(range_begin), range_bytes, PROT_NONE,
+           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED_NOREPLACE, -1, 0);
+  LTSIM_CHECK(range == reinterpret_cast<void*>(range_begin));
+}
+
+Segments::~Segments() {
+  // The range stays reserved for the next world; what its windows showed is let go.
+  void* const range = mmap(reinterpret_cast<void*>(range_begin), range_bytes, PROT_NONE,
+                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1, 0);
+  LTSIM_CHECK(range == reinterpret_cast<void*>(range_begin));
+  munmap(all_, segments_max << window_shift);
+  ::close(memory_);
+}
+
+void Segments::reset() noexcept {
+  for (std::size_t process = 0; process < processes_max; ++process) {
+    const std::size_t first = process * segments_max * mappings_max;
+    for (std::size_t i = 0; i < segments_count_ * mappings_max; ++i) windows_[first + i].mapped = false;
+  }
+  segments_count_ = 0;
+  descriptors_.clear();
+}
+
+int Segments::open(std::string_view name, int flags) noexcept {
+  Segment* segment = find(name);
+  if (segment != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
+    errno = EEXIST;
+    return -1;
+  }
+  if (segment == nullptr && (flags & O_CREAT) == 0) {
+    errno = ENOENT;
+    return -1;
+  }
+  if (segment == nullptr) {
+    if (segments_count_ == segments_max) {
+      world_.unsupported(fmt::format("more than {} shared memory objects in one execution", segments_max));
+    }
+    segment = &segments_[segments_count_++];
+    segment->name.assign(name);
+    segment->object = world_.objects().add(name);
+    segment->bytes = 0;
+    segment->linked = true;
+  } else if ((flags & O_TRUNC) != 0) {
+    segment->bytes = 0;
+  }
+  descriptors_.push_back(index_of(*segment));
+  return first_descriptor + static_cast<int>(descriptors_.size() - 1);
+}
+
+int Segments::unlink(std::string_view name) noexcept {
+  Segment* const segment = find(name);
+  if (segment == nullptr) {
+    errno = ENOENT;
+    return -1;
+  }
+  segment->linked = false;
+  return 0;
+}
+
+int Segments::resize(int descriptor, off_t bytes) noexcept {
+  Segment* const segment = of_descriptor(descriptor);
+  if (segment == nullptr) {
+    errno = EBADF;
+    return -1;
+  }
+  if (bytes < 0) {
+    errno = EINVAL;
+    return -1;
+  }
+  const auto wanted = static_cast<std::size_t>(bytes);
+  if (wanted > segment_bytes_max) {
+    world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
+  }
+  if (wanted > segment->bytes) {
+    std::memset(all_ + (index_of(*segment) << window_shift) + segment->bytes, 0, wanted - segment->bytes);
+  }
+  segment->bytes = wanted;
+  return 0;
+}
+
+int Segments::status(int descriptor, struct stat& into) noexcept {
+  const Segment* const segment = of_descriptor(descriptor);
+  if (segment == nullptr) {
+    errno = EBADF;
+    return -1;
+  }
+  std::memset(&into, 0, sizeof into);
+  into.st_mode = S_IFREG | 0600;
+  into.st_ino = index_of(*segment) + 1;
+  into.st_nlink = segment->linked ? 1 : 0;
+  into.st_size = static_cast<off_t>(segment->bytes);
+  into.st_blksize = 4096;
+  return 0;
+}
+
+int Segments::close(int descriptor) noexcept {
+  if (of_descriptor(descriptor) == nullptr) {
+    errno = EBADF;
+    return -1;
+  }
+  descriptors_[static_cast<std::size_t>(descriptor - first_descriptor)] = closed_descriptor;
+  return 0;
+}
+
+void* Segments::map(std::size_t bytes, int flags, int descriptor, off_t offset) noexcept {
+  const Segment* const segment = of_descriptor(descriptor);
+  if (segment == nullptr) {
+    errno = EBADF;
+    return MAP_FAILED;
+  }
+  const auto begin = static_cast<std::size_t>(offset);
+  if (offset < 0 || begin % 4096 != 0 || bytes == 0 || begin + bytes > segment_bytes_max) {
+    errno = EINVAL;
+    return MAP_FAILED;
+  }
+  if ((flags & (MAP_PRIVATE | MAP_FIXED)) != 0) {
+    world_.unsupported("mmap of a shared memory object with MAP_PRIVATE or MAP_FIXED");
+  }
+  const std::size_t index = index_of(*segment);
+  const std::size_t first = (current_task->process * segments_max + index) * mappings_max;
+  for (std::size_t number = first; number < first + mappings_max; ++number) {
+    Window& window = windows_[number];
+    if (window.mapped) continue;
+    auto* const address = reinterpret_cast<std::byte*>(range_begin + (number << window_shift));
+    if (!window.has_memory) {
+      const GhostScope ghost;
+      void* const mapped = mmap(address, segment_bytes_max, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED,
+                                memory_, static_cast<off_t>(index << window_shift));
+      LTSIM_CHECK(mapped == address);
+      window.has_memory = true;
+    }
+    window.mapped = true;
+    window.bytes = begin + bytes;
+    return address + begin;
+  }
+  world_.unsupported(fmt::format("more than {} mappings of one segment in one process", mappings_max));
+  return MAP_FAILED;
+}
+
+int Segments::unmap(void* address, std::size_t /*bytes*/) noexcept {
+  Window& window = windows_[window_of(address)];
+  if (!window.mapped) {
+    errno = EINVAL;
+    return -1;
+  }
+  window.mapped = false;
+  return 0;
+}
+
+Segments::Place Segments::locate(const volatile void* address) noexcept {
+  const std::size_t number = window_of(address);
+  const Segment& segment = segments_[segment_of_window(number)];
+  const auto offset = static_cast<std::uint32_t>((reinterpret_cast<std::uintptr_t>(address) - range_begin) &
+                                                 (segment_bytes_max - 1));
+  const Window& window = windows_[number];
+  // Linux maps whole pages: bytes between the end of the object and the end of its last page can be touched.
+  const std::size_t pages_end = (std::min(window.bytes, segment.bytes) + 4095) & ~std::size_t{4095};
+  if (!window.mapped || offset >= pages_end) [[unlikely]] {
+    const GhostScope ghost;
+    world_.scheduler().fail(
+        OutcomeKind::crash,
+        fmt::format("access to byte {} of segment {}, which is not mapped there (SIGSEGV or SIGBUS)", offset,
+                    world_.objects().object_name(segment.object)));
+  }
+  return {.object = segment.object, .offset = offset};
+}
+
+std::uint64_t Segments::value_at(const Operation& operation) const noexcept {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < segments_count_; ++i) {
+    if (segments_[i].object != operation.object) continue;
+    std::memcpy(&value, all_ + (i << window_shift) + operation.offset,
+                std::min<std::size_t>(operation.bytes, sizeof value));
+  }
+  return value;
+}
+
+WaitKey Segments::canonical(const volatile void* address) noexcept {
+  const auto raw = reinterpret_cast<std::uintptr_t>(address);
+  if (!contains(address)) return raw;
+  const std::uint64_t segment = segment_of_window(window_of(address));
+  return std::uint64_t{1} << 63U | segment << window_shift | (raw & (segment_bytes_max - 1));
+}
+
+Segments::Segment* Segments::find(std::string_view name) noexcept {
+  for (std::size_t i = 0; i < segments_count_; ++i) {
+    if (segments_[i].linked && segments_[i].name == name) return &segments_[i];
+  }
+  return nullptr;
+}
+
+Segments::Segment* Segments::of_descriptor(int descriptor) noexcept {
+  const auto index = static_cast<std::size_t>(descriptor - first_descriptor);
+  if (!is_descriptor(descriptor) || index >= descriptors_.size() || descriptors_[index] == closed_descriptor)
+    return nullptr;
+  return &segments_[descriptors_[index]];
+}
+
+}  // namespace ltsim

@@ -1,0 +1,115 @@
+// Shared memory of the simulated world: POSIX shared memory objects, their descriptors and their mappings.
+//
+// Each simulated process maps a segment at addresses of its own, as on a real machine, and all mappings show
+// the same bytes: every (process, segment, n-th mapping) has a window, and all windows lie in one reserved
+// range, so that "is this address shared?" is one subtraction and one comparison. Windows are mapped on first
+// use and then kept; after that a mapping costs no system call.
+//
+// Not here: files. Descriptors of shared memory objects are numbered from first_descriptor on; all others are
+// real.
+#pragma once
+
+#include <sys/stat.h>
+#include <sys/types.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim_clock/world/operation.hpp"
+#include "sim_clock/world/task.hpp"
+
+namespace ltsim {
+
+class World;
+
+class Segments {
+ public:
+  static constexpr unsigned window_shift = 24;
+  static constexpr std::size_t segment_bytes_max = std::size_t{1} << window_shift;  // 16 MiB
+  static constexpr std::size_t segments_max = 8;  // in one execution, unlinked ones included
+  static constexpr std::size_t processes_max = 8;
+  static constexpr std::size_t mappings_max = 4;  // of one segment in one process, at a time
+  static constexpr std::size_t windows_count = processes_max * segments_max * mappings_max;
+  /// Far below where Linux puts the program, its heap and its libraries, far above what is refused to user
+  /// code.
+  static constexpr std::uintptr_t range_begin = std::uintptr_t{1} << 40U;
+  static constexpr std::size_t range_bytes = windows_count << window_shift;
+  static constexpr int first_descriptor = 1 << 24;
+
+  [[nodiscard]] static bool contains(const volatile void* address) noexcept {
+    return reinterpret_cast<std::uintptr_t>(address) - range_begin < range_bytes;
+  }
+  [[nodiscard]] static bool is_descriptor(int descriptor) noexcept { return descriptor >= first_descriptor; }
+
+  explicit Segments(World& world);
+  ~Segments();
+  Segments(const Segments&) = delete;
+  Segments& operator=(const Segments&) = delete;
+  void reset() noexcept;
+
+  // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
+  int open(std::string_view name, int flags) noexcept;
+  int unlink(std::string_view name) noexcept;
+  int resize(int descriptor, off_t bytes) noexcept;
+  int status(int descriptor, struct stat& into) noexcept;
+  int close(int descriptor) noexcept;
+  void* map(std::size_t bytes, int flags, int descriptor, off_t offset) noexcept;
+  int unmap(void* address, std::size_t bytes) noexcept;
+
+  /// Object and offset of an address in the range.
+  struct Place {
+    ObjectId object;
+    std::uint32_t offset;
+  };
+  /// Ends the execution as a crash if `address` is not mapped (any more) or lies behind the end of its
+  /// segment.
+  [[nodiscard]] Place locate(const volatile void* address) noexcept;
+
+  /// What memory holds now where `operation` acts, as an unsigned number; of longer accesses the first eight
+  /// bytes.
+  [[nodiscard]] std::uint64_t value_at(const Operation& operation) const noexcept;
+
+  /// Key under which tasks wait for a synchronisation object at this address: equal for all mappings of the
+  /// same bytes.
+  [[nodiscard]] static WaitKey canonical(const volatile void* address) noexcept;
+
+ private:
+  struct Segment {
+    std::string name;
+    ObjectId object = 0;
+    std::size_t bytes = 0;
+    bool linked = false;
+  };
+  struct Window {
+    bool has_memory = false;  // the address range is backed by the segment's bytes; kept between executions
+    bool mapped = false;      // the simulated process has it mapped
+    std::size_t bytes = 0;    // from the window's begin, as mapped
+  };
+
+  [[nodiscard]] static std::size_t window_of(const volatile void* address) noexcept {
+    return (reinterpret_cast<std::uintptr_t>(address) - range_begin) >> window_shift;
+  }
+  [[nodiscard]] static std::size_t segment_of_window(std::size_t window) noexcept {
+    return window / mappings_max % segments_max;
+  }
+  [[nodiscard]] Segment* find(std::string_view name) noexcept;
+  [[nodiscard]] Segment* of_descriptor(int descriptor) noexcept;
+  [[nodiscard]] std::size_t index_of(const Segment& segment) const noexcept {
+    return static_cast<std::size_t>(&segment - segments_.data());
+  }
+
+  World& world_;
+  int memory_ = -1;           // memfd with the bytes of all segments, one after the other
+  std::byte* all_ = nullptr;  // the simulator's own mapping of it
+  std::array<Segment, segments_max> segments_;
+  std::size_t segments_count_ = 0;
+  std::array<Window, windows_count> windows_;
+  std::vector<std::size_t> descriptors_;  // segment index; closed_descriptor when closed
+  static constexpr std::size_t closed_descriptor = segments_max;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,166 @@
+#include "sim_clock/world/semaphores.hpp"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "sim_clock/world/segments.hpp"
+#include "sim_clock/world/world.hpp"
+
+namespace ltsim {
+namespace {
+
+static_assert(sizeof(Handle) <= sizeof(sem_t));
+
+Operation operation_on(OperationKind kind, ObjectId object = 0) noexcept {
+  return {.kind = kind, .object = object};
+}
+
+/// Tasks wait for the object, through whichever handle they reach it.
+WaitKey key_of(ObjectId object) noexcept { return std::uint64_t{1} << 62U | object; }
+
+}  // namespace
+
+sem_t* Semaphores::open(std::string_view name, int flags, unsigned value) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::sem_open));
+  Semaphore* semaphore = find(name);
+  if (semaphore != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
+    errno = EEXIST;
+    return SEM_FAILED;
+  }
+  if (semaphore == nullptr && (flags & O_CREAT) == 0) {
+    errno = ENOENT;
+    return SEM_FAILED;
+  }
+  if (semaphore == nullptr) {
+    if (value > value_max) {
+      errno = EINVAL;
+      return SEM_FAILED;
+    }
+    return &create(name, name, value);
+  }
+  return &handles_[static_cast<std::size_t>(semaphore - semaphores_.data())];
+}
+
+int Semaphores::close(sem_t* handle) noexcept {
+  resolve(handle, OperationKind::sem_close);
+  return 0;
+}
+
+int Semaphores::unlink(std::string_view name) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::sem_unlink));
+  Semaphore* const semaphore = find(name);
+  if (semaphore == nullptr) {
+    errno = ENOENT;
+    return -1;
+  }
+  semaphore->linked = false;
+  return 0;
+}
+
+int Semaphores::init(sem_t* handle, unsigned value) noexcept {
+  world_.scheduler().point(operation_on(OperationKind::sem_init));
+  if (value > value_max) {
+    errno = EINVAL;
+    return -1;
+  }
+  std::memcpy(handle, &create({}, fmt::format("semaphore-{}", count_ + 1), value), sizeof(Handle));
+  return 0;
+}
+
+int Semaphores::destroy(sem_t* handle) noexcept {
+  resolve(handle, OperationKind::sem_destroy);
+  std::memset(handle, 0, sizeof(Handle));
+  return 0;
+}
+
+int Semaphores::wait(sem_t* handle) noexcept {
+  return wait_until(handle, OperationKind::sem_wait, VirtualClock::never);
+}
+
+int Semaphores::try_wait(sem_t* handle) noexcept {
+  Semaphore& semaphore = resolve(handle, OperationKind::sem_trywait);
+  if (semaphore.value == 0) {
+    errno = EAGAIN;
+    return -1;
+  }
+  --semaphore.value;
+  return 0;
+}
+
+int Semaphores::timed_wait(sem_t* handle, clockid_t clock, const timespec& deadline) noexcept {
+  if (deadline.tv_nsec < 0 || deadline.tv_nsec >= 1'000'000'000) {
+    errno = EINVAL;
+    return -1;
+  }
+  return wait_until(handle, OperationKind::sem_timedwait, world_.to_sim_time(clock, deadline));
+}
+
+int Semaphores::post(sem_t* handle) noexcept {
+  Semaphore& semaphore = resolve(handle, OperationKind::sem_post);
+  if (semaphore.value == value_max) {
+    errno = EOVERFLOW;
+    return -1;
+  }
+  ++semaphore.value;
+  world_.scheduler().wake(key_of(semaphore.object), 1);
+  return 0;
+}
+
+int Semaphores::value(sem_t* handle, int& into) noexcept {
+  into = static_cast<int>(resolve(handle, OperationKind::sem_getvalue).value);
+  return 0;
+}
+
+int Semaphores::wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept {
+  Semaphore& semaphore = resolve(handle, kind);
+  while (semaphore.value == 0) {
+    if (world_.scheduler().block(key_of(semaphore.object), deadline) == Scheduler::Wake::timed_out &&
+        semaphore.value == 0) {
+      errno = ETIMEDOUT;
+      return -1;
+    }
+  }
+  --semaphore.value;
+  return 0;
+}
+
+sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, unsigned value) {
+  if (count_ == semaphores_max)
+    world_.unsupported(fmt::format("more than {} semaphores in one execution", semaphores_max));
+  Semaphore& semaphore = semaphores_[count_];
+  semaphore.name.assign(name);
+  semaphore.object = world_.objects().add(shown_name);
+  semaphore.value = value;
+  semaphore.linked = !name.empty();
+  sem_t& handle = handles_[count_];
+  const Handle content{.execution = world_.execution_number(), .index = static_cast<std::uint32_t>(count_)};
+  std::memcpy(&handle, &content, sizeof content);
+  ++count_;
+  return handle;
+}
+
+Semaphores::Semaphore* Semaphores::find(std::string_view name) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (semaphores_[i].linked && semaphores_[i].name == name) return &semaphores_[i];
+  }
+  return nullptr;
+}
+
+Semaphores::Semaphore& Semaphores::resolve(sem_t* handle, OperationKind kind) noexcept {
+  Handle found;
+  std::memcpy(static_cast<void*>(&found), handle, sizeof found);
+  if (found.execution != world_.execution_number() || found.index >= count_) [[unlikely]] {
+    const GhostScope ghost;
+    world_.scheduler().fail(OutcomeKind::crash,
+                            fmt::format("{} on memory that holds no semaphore", to_string(kind)));
+  }
+  Semaphore& semaphore = semaphores_[found.index];
+  world_.scheduler().point(operation_on(kind, semaphore.object));
+  return semaphore;
+}
+
+}  // namespace ltsim

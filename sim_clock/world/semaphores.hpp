@@ -1,0 +1,69 @@
+// POSIX semaphores of the simulated world, named and not.
+//
+// As on Linux a post makes the count visible to everybody and wakes the longest waiting task; another task
+// that runs first may take the token away from it.
+#pragma once
+
+#include <semaphore.h>
+
+#include <array>
+#include <climits>
+#include <ctime>
+#include <string>
+#include <string_view>
+
+#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/handle.hpp"
+#include "sim_clock/world/operation.hpp"
+
+namespace ltsim {
+
+class World;
+
+class Semaphores {
+ public:
+  static constexpr unsigned value_max = SEM_VALUE_MAX;
+  static constexpr std::size_t semaphores_max = 256;  // in one execution
+
+  /// Whether open() returned it, in this execution or another.
+  [[nodiscard]] static bool is_named(const sem_t* handle) noexcept {
+    return handle >= handles_.data() && handle < handles_.data() + handles_.size();
+  }
+
+  explicit Semaphores(World& world) noexcept : world_(world) {}
+  void reset() noexcept { count_ = 0; }
+
+  // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
+  sem_t* open(std::string_view name, int flags, unsigned value) noexcept;
+  int close(sem_t* handle) noexcept;
+  int unlink(std::string_view name) noexcept;
+  int init(sem_t* handle, unsigned value) noexcept;
+  int destroy(sem_t* handle) noexcept;
+  int wait(sem_t* handle) noexcept;
+  int try_wait(sem_t* handle) noexcept;
+  int timed_wait(sem_t* handle, clockid_t clock, const timespec& deadline) noexcept;
+  int post(sem_t* handle) noexcept;
+  int value(sem_t* handle, int& into) noexcept;
+
+ private:
+  struct Semaphore {
+    std::string name;  // empty: not named
+    ObjectId object = 0;
+    unsigned value = 0;
+    bool linked = false;
+  };
+
+  /// @return its handle
+  sem_t& create(std::string_view name, std::string_view shown_name, unsigned value);
+  [[nodiscard]] Semaphore* find(std::string_view name) noexcept;
+  /// Ends the execution as a crash if the memory holds no semaphore of this execution.
+  Semaphore& resolve(sem_t* handle, OperationKind kind) noexcept;
+  int wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept;
+
+  World& world_;
+  static inline std::array<sem_t, semaphores_max> handles_{};  // what open() returns, by index
+  std::array<Semaphore, semaphores_max> semaphores_;           // the first count_ belong to this execution
+  std::size_t count_ = 0;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,37 @@
+// Follows one execution step by step: to record a schedule, to find the place where a recorded choice
+// applies, to write a trace. A world without a listener pays one predictable branch per step.
+#pragma once
+
+#include <string_view>
+
+#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/operation.hpp"
+
+namespace ltsim {
+
+struct Task;
+
+class StepListener {
+ public:
+  virtual ~StepListener() = default;
+
+  /// `task` has arrived at the scheduling point before `operation`; the choices that follow are made there.
+  virtual void arrives(const Task& task, const Operation& operation) noexcept = 0;
+  /// `task` goes on and performs the operation.
+  virtual void performs(const Task& task, const Operation& operation) noexcept = 0;
+  /// `task` cannot go on with its pending operation; the choice of the next task follows.
+  virtual void blocks(const Task& task) noexcept = 0;
+  /// `task` has ended; the choice of the next task follows.
+  virtual void ends(const Task& task) noexcept = 0;
+  /// The scenario asks for a value; the choice follows.
+  virtual void asks(std::string_view what) noexcept = 0;
+  /// A remark of the scenario or of its checks.
+  virtual void notes(std::string_view text) noexcept = 0;
+
+ protected:
+  StepListener() = default;
+  StepListener(const StepListener&) = default;
+  StepListener& operator=(const StepListener&) = default;
+};
+
+}  // namespace ltsim

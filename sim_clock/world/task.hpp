@@ -1,0 +1,76 @@
+// A simulated thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/context.hpp"
+#include "sim_clock/world/operation.hpp"
+#include "sim_clock/world/task_storage.hpp"
+
+namespace ltsim {
+
+class World;
+
+using ProcessId = std::uint8_t;
+
+/// What a blocked task waits for: the canonical address of a semaphore, mutex, condition or futex word, or a
+/// task to join.
+using WaitKey = std::uint64_t;
+
+struct Task {
+  enum class State : std::uint8_t {
+    runnable,
+    blocked,
+    stalled,
+    finished
+  };  // stalled: gets no processor for a while
+
+  World* world = nullptr;
+  TaskId id = 0;
+  ProcessId process = 0;
+  State state = State::finished;
+  bool timed_out = false;  ///< the last block() ended by its deadline
+  bool detached = false;
+  bool joined = false;
+  Operation pending;     ///< the operation at whose scheduling point the task stands or that it last passed
+  WaitKey wait_key = 0;  ///< while blocked
+  std::uint64_t blocked_since = 0;    ///< while blocked: orders the waiters of one key
+  SimTime deadline = SimTime::max();  ///< while blocked
+  std::string name;                   ///< "process/task"
+
+  std::function<void()> body;
+  void* result = nullptr;  ///< what a pthread start routine returned
+
+  struct ThreadLocalDestructor {
+    void (*destroy)(void*);
+    void* object;
+  };
+  std::vector<ThreadLocalDestructor> thread_local_destructors;
+
+  Context context;
+  std::unique_ptr<TaskStorage> storage;
+};
+
+/// The task whose code runs on this thread; null outside a simulated task and inside a GhostScope. It lies in
+/// the task's own thread-local storage, so a switch changes it at no cost.
+extern constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]];
+
+/// While it lives, code of the current task is not part of the simulated world: no scheduling points, and
+/// system calls are the real ones. For checks and for text, never for code under test.
+class GhostScope {
+ public:
+  GhostScope() noexcept : task_(current_task) { current_task = nullptr; }
+  ~GhostScope() { current_task = task_; }
+  GhostScope(const GhostScope&) = delete;
+  GhostScope& operator=(const GhostScope&) = delete;
+
+ private:
+  Task* task_;
+};
+
+}  // namespace ltsim

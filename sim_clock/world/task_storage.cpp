@@ -1,0 +1,121 @@
+#include "sim_clock/world/task_storage.hpp"
+
+#include <elf.h>
+#include <link.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "sim_clock/check/self_check.hpp"
+
+// Exported by glibc for its own parts (GLIBC_PRIVATE) and used by debuggers and sanitizers too: the
+// allocation of a new thread's static TLS block, and the first use of <ctype.h> in a new thread.
+extern "C" void* _dl_allocate_tls(void* memory);
+extern "C" void _dl_deallocate_tls(void* thread_pointer, bool free_block);
+extern "C" void __ctype_init();
+
+namespace ltsim {
+namespace {
+
+/// Thread-locals of one loaded module, as they are in every thread at a fixed distance from the thread
+/// pointer.
+struct ThreadLocals {
+  std::ptrdiff_t from_thread_pointer;
+  const void* image;
+  std::size_t image_bytes;
+  std::size_t total_bytes;
+};
+
+char* current_thread_pointer() noexcept {
+  char* value = nullptr;
+  asm volatile("mov %%fs:0, %0" : "=r"(value));
+  return value;
+}
+
+bool belongs_to_libc(std::string_view path) noexcept {
+  const std::string_view file = path.substr(path.find_last_of('/') + 1);
+  return file.starts_with("libc.so") || file.starts_with("libc-") || file.starts_with("ld-linux");
+}
+
+int collect(dl_phdr_info* module, std::size_t /*size*/, void* into) {
+  if (module->dlpi_tls_data == nullptr || belongs_to_libc(module->dlpi_name)) return 0;
+  for (int i = 0; i < module->dlpi_phnum; ++i) {
+    const auto& header = module->dlpi_phdr[i];
+    if (header.p_type != PT_TLS) continue;
+    static_cast<std::vector<ThreadLocals>*>(into)->push_back(
+        {.from_thread_pointer = static_cast<char*>(module->dlpi_tls_data) - current_thread_pointer(),
+         .image = reinterpret_cast<const void*>(module->dlpi_addr + header.p_vaddr),
+         .image_bytes = header.p_filesz,
+         .total_bytes = header.p_memsz});
+  }
+  return 0;
+}
+
+/// Modules that lie in static TLS, that is all that were loaded with the program.
+const std::vector<ThreadLocals>& modules_to_reset() {
+  static const std::vector<ThreadLocals> modules = [] {
+    std::vector<ThreadLocals> found;
+    dl_iterate_phdr(&collect, &found);
+    return found;
+  }();
+  return modules;
+}
+
+// Words of glibc's thread control block that a new thread inherits: x86-64, glibc sysdeps/x86_64/nptl/tls.h,
+// tcbhead_t.
+constexpr std::size_t self_tcb = 0;
+constexpr std::size_t self_thread = 16;
+constexpr std::size_t stack_guard = 40;
+constexpr std::size_t pointer_guard = 48;
+
+}  // namespace
+
+TaskStorage::TaskStorage() {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  stack_base_ = mmap(nullptr, stack_bytes + page, PROT_READ | PROT_WRITE,
+                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
+  LTSIM_CHECK(stack_base_ != MAP_FAILED);
+  LTSIM_CHECK(mprotect(stack_base_, page, PROT_NONE) == 0);
+  stack_top_ = static_cast<char*>(stack_base_) + page + stack_bytes;
+
+  thread_pointer_ = _dl_allocate_tls(nullptr);
+  LTSIM_CHECK(thread_pointer_ != nullptr);
+  char* const block = static_cast<char*>(thread_pointer_);
+  const char* const own = current_thread_pointer();
+  std::memcpy(block + self_tcb, &thread_pointer_, sizeof thread_pointer_);
+  std::memcpy(block + self_thread, &thread_pointer_, sizeof thread_pointer_);
+  std::memcpy(block + stack_guard, own + stack_guard, sizeof(std::uintptr_t));
+  std::memcpy(block + pointer_guard, own + pointer_guard, sizeof(std::uintptr_t));
+}
+
+TaskStorage::~TaskStorage() {
+  _dl_deallocate_tls(thread_pointer_, true);
+  munmap(stack_base_,
+         static_cast<std::size_t>(static_cast<char*>(stack_top_) - static_cast<char*>(stack_base_)));
+}
+
+void TaskStorage::reset() noexcept {
+  for (const ThreadLocals& module : modules_to_reset()) {
+    char* const at = static_cast<char*>(thread_pointer_) + module.from_thread_pointer;
+    std::memcpy(at, module.image, module.image_bytes);
+    std::memset(at + module.image_bytes, 0, module.total_bytes - module.image_bytes);
+  }
+  const std::ptrdiff_t errno_from_thread_pointer = reinterpret_cast<char*>(&errno) - current_thread_pointer();
+  std::memset(static_cast<char*>(thread_pointer_) + errno_from_thread_pointer, 0, sizeof errno);
+}
+
+bool TaskStorage::on_guard_page(const void* address) const noexcept {
+  const auto* const at = static_cast<const char*>(address);
+  const auto* const base = static_cast<const char*>(stack_base_);
+  return at >= base && at < static_cast<const char*>(stack_top_) - stack_bytes;
+}
+
+void TaskStorage::finish_set_up_of_current() noexcept { __ctype_init(); }
+
+}  // namespace ltsim

@@ -1,0 +1,39 @@
+// The thread-local storage of one task, and its stack; both are kept for the next execution.
+//
+// The storage is a block as glibc makes it for a new thread, so that every `thread_local` of the program and
+// of its libraries, errno and pthread_self() are the task's own. reset() puts the thread-locals of the
+// program and of all libraries but libc itself back to their initial values; libc's stay, because malloc
+// keeps its per-thread cache there.
+#pragma once
+
+#include <cstddef>
+
+namespace ltsim {
+
+class TaskStorage {
+ public:
+  static constexpr std::size_t stack_bytes = 256 * 1024;
+
+  /// Maps the stack (with a guard page below it) and allocates the thread-local block.
+  TaskStorage();
+  ~TaskStorage();
+  TaskStorage(const TaskStorage&) = delete;
+  TaskStorage& operator=(const TaskStorage&) = delete;
+
+  /// Initial values for every thread-local but those of libc; errno = 0.
+  void reset() noexcept;
+
+  [[nodiscard]] void* thread_pointer() const noexcept { return thread_pointer_; }
+  [[nodiscard]] void* stack_top() const noexcept { return stack_top_; }
+  [[nodiscard]] bool on_guard_page(const void* address) const noexcept;
+
+  /// To be called once on the new stack, with the new storage in place, before any other code runs there.
+  static void finish_set_up_of_current() noexcept;
+
+ private:
+  void* stack_base_ = nullptr;
+  void* stack_top_ = nullptr;
+  void* thread_pointer_ = nullptr;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,85 @@
+#include "sim_clock/world/world.hpp"
+
+#include <fmt/format.h>
+
+#include "sim_clock/check/self_check.hpp"
+
+namespace ltsim {
+
+void Process::start(std::string_view name, std::function<void()> body) {
+  world_.scheduler().create_task(id_, fmt::format("{}/{}", name_, name), std::move(body));
+}
+
+World::World() = default;
+
+Process& World::process(std::string_view name) {
+  for (std::size_t i = 0; i < processes_count_; ++i) {
+    if (processes_[i]->name() == name) return *processes_[i];
+  }
+  const std::size_t id = processes_count_++;
+  LTSIM_CHECK(id < Segments::processes_max);
+  if (id == processes_.size()) processes_.emplace_back();
+  // The next execution of a scenario makes the same processes in the same order: their objects are used
+  // again.
+  if (processes_[id] == nullptr || processes_[id]->name() != name) {
+    processes_[id] = std::make_unique<Process>(*this, static_cast<ProcessId>(id), name);
+  }
+  return *processes_[id];
+}
+
+void World::require(bool holds, std::string_view message) {
+  if (!holds && !failed()) violated(std::string{message});
+}
+
+std::string World::blocked_in(std::string_view task_name) const {
+  for (std::size_t i = 0; i < scheduler_.tasks_count(); ++i) {
+    const Task& task = scheduler_.task(static_cast<TaskId>(i));
+    if (task.name != task_name || task.state != Task::State::blocked) continue;
+    return fmt::format("{} {}", to_string(task.pending.kind), objects_.name(task.pending));
+  }
+  return {};
+}
+
+void World::reset(Strategy& strategy, StepListener* listener) {
+  ++execution_number_;
+  scheduler_.reset(strategy, listener);
+  objects_.reset();
+  segments_.reset();
+  semaphores_.reset();
+  mutexes_.reset();
+  threads_.reset();
+  processes_count_ = 0;
+}
+
+void World::unsupported(std::string what) {
+  const GhostScope ghost;
+  scheduler_.fail(OutcomeKind::unsupported, std::move(what));
+}
+
+SimTime World::to_sim_time(clockid_t clock, const timespec& time) const noexcept {
+  // A deadline before the world's begin is simply due; one beyond the clock's range never comes.
+  constexpr std::int64_t seconds_max = VirtualClock::never.count() / 1'000'000'000 - 1;
+  if (time.tv_sec > seconds_max) return VirtualClock::never;
+  if (time.tv_sec < 0) return SimTime{0};
+  const SimTime since_epoch = std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+  return clock == CLOCK_REALTIME ? std::max(since_epoch - wall_clock_epoch, SimTime{0}) : since_epoch;
+}
+
+timespec World::read_clock(clockid_t clock) noexcept {
+  scheduler_.clock_was_read();
+  scheduler_.point({.kind = OperationKind::clock_read});
+  SimTime time = now();
+  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) time += wall_clock_epoch;
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
+}
+
+void World::sleep_until(SimTime deadline) noexcept {
+  scheduler_.point({.kind = OperationKind::sleep});
+  while (now() < deadline) {
+    constexpr WaitKey nobody_wakes = 0;
+    scheduler_.block(nobody_wakes, deadline);
+  }
+}
+
+}  // namespace ltsim

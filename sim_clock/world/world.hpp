@@ -1,0 +1,161 @@
+// One simulated execution: processes, their tasks, the clock, and the kernel objects they share.
+//
+// A scenario gets a world, sets up its processes and calls run():
+//
+//     SCENARIO("demo/handoff", "two processes and a semaphore") {
+//       world.process("kernel").start("main", [&] { ... });
+//       world.process("emulator").start("main", [&] { ... });
+//       world.run();
+//       world.require(answered, "every request is answered");
+//     }
+//
+// The code in the tasks is ordinary code, compiled with ltsim_instrument(). Nothing of an execution survives
+// it; the world itself is pooled. One world exists at a time.
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim_clock/check/outcome.hpp"
+#include "sim_clock/world/mutexes.hpp"
+#include "sim_clock/world/object_names.hpp"
+#include "sim_clock/world/scheduler.hpp"
+#include "sim_clock/world/segments.hpp"
+#include "sim_clock/world/semaphores.hpp"
+#include "sim_clock/world/threads.hpp"
+
+namespace ltsim {
+
+/// A simulated process: tasks that see shared memory at addresses of their own.
+class Process {
+ public:
+  Process(World& world, ProcessId id, std::string_view name) : world_(world), id_(id), name_(name) {}
+
+  /// Adds a task. It starts to run when the strategy first chooses it; what it does before its first
+  /// scheduling point is not visible to anybody.
+  /// @param name  unique within the process; shown as "process/name"
+  void start(std::string_view name, std::function<void()> body);
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+ private:
+  World& world_;
+  ProcessId id_;
+  std::string name_;
+};
+
+class World {
+ public:
+  World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  // --- for scenarios ---
+
+  /// The process of that name; the first call makes it. At most Segments::processes_max.
+  Process& process(std::string_view name);
+
+  /// Runs all tasks until they have finished or the execution has failed.
+  void run() { scheduler_.run(); }
+  /// Whether the execution has failed already: what a scenario checks after run() means nothing then.
+  [[nodiscard]] bool failed() const noexcept { return !scheduler_.outcome().passed(); }
+
+  /// A property of the scenario is broken: ends the execution. Callable from anywhere, tasks included.
+  void violated(std::string message) { scheduler_.fail(OutcomeKind::invariant, std::move(message)); }
+  /// violated(message) unless `holds`. After a failure it does nothing.
+  void require(bool holds, std::string_view message);
+
+  /// A choice of the scenario, made by the strategy and kept in the schedule; 0 by default.
+  /// @param what   names the question in the schedule, one word
+  /// @param count  number of possibilities, 1 to 256
+  /// @return       0 to count - 1
+  [[nodiscard]] std::size_t choose(std::string_view what, std::size_t count) {
+    return scheduler_.choose(what, count);
+  }
+
+  /// Gives bytes of a segment a name of their own for schedules and traces.
+  /// @param segment  name of the segment without '/'; it may be created later
+  /// @param region   e.g. "segment.request"
+  void name_region(std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
+                   std::string_view region) {
+    objects_.name_region(segment, offset, bytes, region);
+  }
+
+  /// Calls `check` each time that every task waits of its own accord and none is merely held up, before time
+  /// moves on. It may call violated().
+  void whenever_idle(std::function<void()> check) { scheduler_.add_idle_check(std::move(check)); }
+
+  /// Whether the strategy may let time pass although somebody could run: slow processors. Default yes.
+  void set_time_is_a_choice(bool yes) noexcept { scheduler_.set_time_is_a_choice(yes); }
+
+  /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
+  void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
+
+  /// What `task` ("process/name") is blocked in, or nothing if it is not blocked.
+  /// @return e.g. "sem_wait handoff"
+  [[nodiscard]] std::string blocked_in(std::string_view task) const;
+
+  [[nodiscard]] SimTime now() const noexcept { return scheduler_.clock().now(); }
+
+  /// A remark for the trace. `text()` is only called when somebody reads it.
+  template <typename Text>
+  void note(Text&& text) {
+    if (scheduler_.listener() == nullptr) return;
+    const GhostScope ghost;
+    scheduler_.listener()->notes(std::forward<Text>(text)());
+  }
+
+  // --- for the explorer ---
+
+  /// Forgets the last execution. `listener` may be null.
+  void reset(Strategy& strategy, StepListener* listener);
+
+  // --- for the takeover functions ---
+
+  [[nodiscard]] Scheduler& scheduler() noexcept { return scheduler_; }
+  [[nodiscard]] const Scheduler& scheduler() const noexcept { return scheduler_; }
+  [[nodiscard]] ObjectNames& objects() noexcept { return objects_; }
+  [[nodiscard]] const ObjectNames& objects() const noexcept { return objects_; }
+  [[nodiscard]] Segments& segments() noexcept { return segments_; }
+  [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
+  [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
+  [[nodiscard]] Threads& threads() noexcept { return threads_; }
+
+  /// 1 for the first execution of this program, and so on: never the same twice.
+  [[nodiscard]] std::uint64_t execution_number() const noexcept { return execution_number_; }
+  [[nodiscard]] const std::string& process_name(ProcessId id) const noexcept {
+    return processes_[id]->name();
+  }
+
+  /// The code under test called something that this world does not simulate. Ends the execution.
+  void unsupported(std::string what);
+
+  /// The wall clock is this much ahead of the monotonic one: 2026-01-01T00:00:00Z when the world begins.
+  static constexpr SimTime wall_clock_epoch = std::chrono::seconds{1'767'225'600};
+  /// An absolute time on a POSIX clock, as time of this world; all clocks but CLOCK_REALTIME begin with the
+  /// world.
+  [[nodiscard]] SimTime to_sim_time(clockid_t clock, const timespec& time) const noexcept;
+  [[nodiscard]] timespec read_clock(clockid_t clock) noexcept;
+  /// Blocks the running task until `deadline`.
+  void sleep_until(SimTime deadline) noexcept;
+
+  [[nodiscard]] static WaitKey join_key(TaskId task) noexcept { return std::uint64_t{1} << 60U | task; }
+
+ private:
+  Scheduler scheduler_{*this};
+  ObjectNames objects_;
+  Segments segments_{*this};
+  Semaphores semaphores_{*this};
+  Mutexes mutexes_{*this};
+  Threads threads_{*this};
+  std::vector<std::unique_ptr<Process>>
+      processes_;  // pooled; the first processes_count_ belong to this execution
+  std::size_t processes_count_ = 0;
+  std::uint64_t execution_number_ = 0;
+};
+
+}  // namespace ltsim
