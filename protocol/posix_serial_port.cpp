@@ -80,7 +80,8 @@ tl::expected<bool, PortError> wait_until_ready(int descriptor, short events,
                                                Clock::time_point deadline) noexcept {
   for (;;) {
     const auto remaining = std::max(deadline - Clock::now(), Clock::duration::zero());
-    // Rounded up, so that a time-out is never early; a wait beyond poll()'s range goes round again.
+    // Rounded up, so that the last fraction of a millisecond is slept and not spun; a wait beyond poll()'s
+    // range goes round again.
     const auto remaining_ms = std::chrono::ceil<std::chrono::milliseconds>(remaining).count();
     constexpr decltype(remaining_ms) longest_ms = 1'000'000;
     pollfd line = {.fd = descriptor, .events = events, .revents = 0};

@@ -2,10 +2,13 @@
 // question (K1 to K4, K6 to K9) changes. The hazards that need only the order of whole calls are here too.
 
 #include <array>
+#include <fstream>
 #include <optional>
 #include <thread>
 
 #include <gtest/gtest.h>
+
+#include <unistd.h>
 
 #include "protocol/master_shared_memory_wrapper.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
@@ -358,10 +361,21 @@ TEST(Stopping, leaves_no_post_behind_however_often_it_is_requested) {  // H11 do
   EXPECT_EQ(exchange.tokens(), 0u);
 }
 
+/// @return whether the system has put the thread to sleep
+bool is_asleep(pid_t thread) {
+  std::ifstream status("/proc/self/task/" + std::to_string(thread) + "/stat");
+  std::string number, name, run_state;
+  return status >> number >> name >> run_state && run_state == "S";
+}
+
 TEST(Stopping, frees_a_slave_that_waits) {
   Exchange exchange(small_options());
-  std::jthread stopper([&exchange] { exchange.slave.request_stop(); });
+  std::jthread stopper([&exchange, waiting_thread = ::gettid()] {
+    while (!is_asleep(waiting_thread)) std::this_thread::yield();
+    exchange.slave.request_stop();
+  });
   EXPECT_FALSE(exchange.slave.wait_for_request());
+  EXPECT_EQ(exchange.tokens(), 0u);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // At most one kernel and one emulator on a segment, and none after its process has died.
 
 #include <array>
+#include <atomic>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -68,13 +70,27 @@ TEST(RoleLock, leaves_no_file_behind) {
   EXPECT_NE(::access(lock_path(segment).c_str(), F_OK), 0);
 }
 
-TEST(RoleLock, does_not_believe_a_file_that_no_longer_has_its_name) {
+TEST(RoleLock, is_never_held_twice_by_those_who_take_and_release_it_all_the_time) {
+  // Whoever opened the lock file before its holder removed it must not take the lock of a file without a
+  // name.
   const TestSegment segment;
-  RoleLock displaced(segment.name(), Role::kernel);
-  ASSERT_TRUE(displaced.try_lock());
-  ASSERT_EQ(::unlink(lock_path(segment).c_str()), 0);
-  RoleLock named(segment.name(), Role::kernel);
-  EXPECT_TRUE(named.try_lock());
+  std::atomic<int> holders_count = 0;
+  std::atomic<bool> held_twice = false;
+  const auto take_and_release = [&] {
+    RoleLock lock(segment.name(), Role::kernel);
+    for (int round = 0; round < 5000; ++round) {
+      if (!lock.try_lock()) continue;
+      if (++holders_count > 1) held_twice = true;
+      std::this_thread::yield();
+      --holders_count;
+      lock.release();
+    }
+  };
+  {
+    const std::jthread first(take_and_release);
+    const std::jthread second(take_and_release);
+  }
+  EXPECT_FALSE(held_twice);
 }
 
 TEST(RoleLock, a_segment_name_with_a_slash_stays_within_the_folder) {

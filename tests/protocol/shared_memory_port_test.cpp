@@ -106,6 +106,7 @@ TEST_F(SharedMemoryPortTest, writing_or_reading_no_bytes_does_nothing) {
   EXPECT_EQ(take_all_tokens(segment_.name()), 0u);
   slave_.write_response(bytes("answer"));
   EXPECT_EQ(port_.read({}), 0u);
+  EXPECT_EQ(RawSegment(segment_.name()).word(0), 2u) << "the answer still stands in the segment";
   EXPECT_EQ(read(8), "answer");
 }
 
