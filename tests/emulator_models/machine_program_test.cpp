@@ -130,7 +130,7 @@ TEST_F(MachineProgramTest, a_new_speed_of_a_turning_spindle_is_done_when_it_is_a
 TEST_F(MachineProgramTest, a_reversal_goes_through_standstill_and_never_drives_both_ways) {
   do_m(3);
   strobe_m(4);
-  while (get("M120") == 0) {
+  for (int scans = 0; scans < 200 && get("M120") == 0; ++scans) {
     scan_once();
     ASSERT_FALSE(output("Y0") && output("Y1"));
     ASSERT_FALSE(get("Y0") != 0 && get("Y1") != 0);
