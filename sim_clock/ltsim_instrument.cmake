@@ -1,8 +1,10 @@
 # ltsim_instrument(target): compiles the target's sources so that the simulated world sees their memory accesses.
 #
 # The compiler's thread-sanitizer pass announces each access by a call. The target is NOT linked with that sanitizer's runtime: the
-# world defines those calls itself.
+# world defines those calls itself. Copies stay calls: one that the compiler expands is over in one step, and could not be seen
+# half done.
 function(ltsim_instrument target)
+  target_compile_options(${target} PRIVATE -fno-builtin-memcpy -fno-builtin-memmove -fno-builtin-memset)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     # clang's driver offers no flag for the pass alone; these are LLVM's.
     target_compile_options(${target} PRIVATE -fsanitize=thread "SHELL:-mllvm -tsan-distinguish-volatile=1"

@@ -14,3 +14,6 @@ namespace ltsim {
     if (!(condition)) [[unlikely]]                             \
       ::ltsim::internal_error(__FILE__, __LINE__, #condition); \
   } while (false)
+
+/// This place is never reached; if it is, the text says what went wrong.
+#define LTSIM_UNREACHABLE(text) ::ltsim::internal_error(__FILE__, __LINE__, text)

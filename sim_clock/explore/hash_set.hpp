@@ -12,16 +12,26 @@ class HashSet {
   /// @param entries_max  inserting more has no effect
   explicit HashSet(std::size_t entries_max) : entries_max_(entries_max), slots_(1024, 0) {}
 
+  /// The hash is placed at the next call: until then the memory of its slot is on its way.
   void insert(std::uint64_t hash) {
-    hash = hash == 0 ? 1 : hash;  // 0 marks a free slot
-    if (count_ == entries_max_) return;
-    if (2 * count_ >= slots_.size()) grow();
-    count_ += place(hash) ? 1 : 0;
+    place_pending();
+    pending_ = hash == 0 ? 1 : hash;  // 0 marks a free slot, and nothing pending
+    __builtin_prefetch(&slots_[pending_ & (slots_.size() - 1)], 1);
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+  [[nodiscard]] std::size_t size() {
+    place_pending();
+    return count_;
+  }
 
  private:
+  void place_pending() {
+    if (pending_ == 0 || count_ == entries_max_) return;
+    if (2 * count_ >= slots_.size()) grow();
+    count_ += place(pending_) ? 1 : 0;
+    pending_ = 0;
+  }
+
   bool place(std::uint64_t hash) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = hash & mask;
@@ -42,6 +52,7 @@ class HashSet {
 
   std::size_t entries_max_;
   std::size_t count_ = 0;
+  std::uint64_t pending_ = 0;
   std::vector<std::uint64_t> slots_;  // a power of two of them, at most half full
 };
 

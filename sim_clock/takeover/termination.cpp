@@ -18,7 +18,7 @@ namespace {
   ltsim::Task& self = *current_task;
   const ltsim::GhostScope ghost;
   self.world->scheduler().fail(kind, fmt::format("{}: {}", self.name, message));
-  LTSIM_CHECK(!"a failed task went on");
+  LTSIM_UNREACHABLE("a failed task went on");
 }
 
 /// The exception that nobody caught, if that is why std::terminate() came here.

@@ -62,7 +62,7 @@ void Context::enter(boost::context::detail::transfer_t transfer) noexcept {
   parties[0]->resume_point_ = transfer.fctx;
   const Context& self = *parties[1];
   self.entry_(self.argument_);
-  LTSIM_CHECK(!"a task returned from its entry function");
+  LTSIM_UNREACHABLE("a task returned from its entry function");
 }
 
 }  // namespace ltsim

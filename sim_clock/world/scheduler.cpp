@@ -55,7 +55,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.detached = false;
   task.joined = false;
   task.pending = Operation{};
-  task.name.assign(name);
+  task.name.assign(world_.process_name(process)).append("/").append(name);
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
@@ -115,7 +115,7 @@ void Scheduler::finish_running() noexcept {
     running_ = nullptr;
     Context::switch_between(self.context, main_context_);
   }
-  LTSIM_CHECK(!"a finished task was resumed");
+  LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
 void Scheduler::point(const Operation& operation) noexcept {
@@ -196,7 +196,7 @@ void Scheduler::fail(OutcomeKind kind, std::string message) {
   Task& self = *running_;
   running_ = nullptr;
   Context::switch_between(self.context, main_context_);
-  LTSIM_CHECK(!"a task of a failed execution was resumed");
+  LTSIM_UNREACHABLE("a task of a failed execution was resumed");
 }
 
 Task* Scheduler::next_after_stop() noexcept {

@@ -42,6 +42,7 @@ class Scheduler {
   // --- set-up, by the scenario ---
 
   /// The task starts to run when the strategy first chooses it.
+  /// @param name  unique within the process
   Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
   void set_points_max(std::uint64_t points) noexcept { points_max_ = points; }
   /// Whether the strategy may let time pass although somebody could run (default yes).

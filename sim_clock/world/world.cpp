@@ -7,7 +7,7 @@
 namespace ltsim {
 
 void Process::start(std::string_view name, std::function<void()> body) {
-  world_.scheduler().create_task(id_, fmt::format("{}/{}", name_, name), std::move(body));
+  world_.scheduler().create_task(id_, name, std::move(body));
 }
 
 World::World() = default;

@@ -1,0 +1,151 @@
+// The program `ltsim`, run as a user runs it.
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+struct Result {
+  int exit_code;
+  std::string output;
+};
+
+class CommandLineTest : public testing::Test {
+ protected:
+  CommandLineTest()
+      : folder_(std::filesystem::temp_directory_path() / fmt::format("ltsim-test-{}", getpid())) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~CommandLineTest() override { std::filesystem::remove_all(folder_); }
+
+  /// Runs a shell line in a folder of the test's own; both streams are kept.
+  [[nodiscard]] Result shell(const std::string& line) const {
+    FILE* const pipe = popen(fmt::format("cd '{}' && {} 2>&1", folder_.string(), line).c_str(), "r");
+    Result result{.exit_code = -1, .output = {}};
+    char buffer[4096];
+    for (std::size_t got = fread(buffer, 1, sizeof buffer, pipe); got != 0;
+         got = fread(buffer, 1, sizeof buffer, pipe)) {
+      result.output.append(buffer, got);
+    }
+    result.exit_code = WEXITSTATUS(pclose(pipe));
+    return result;
+  }
+  [[nodiscard]] Result ltsim(const std::string& arguments) const {
+    return shell(LTSIM_PROGRAM " " + arguments);
+  }
+
+  [[nodiscard]] std::string read(const char* name) const {
+    std::ifstream file{folder_ / name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+  void write(const char* name, const std::string& text) const { std::ofstream{folder_ / name} << text; }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(CommandLineTest, list_shows_each_scenario_with_what_it_is) {
+  const Result result = ltsim("list");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* name : {"paper/one-request ", "paper/three-requests ", "paper/time-out ",
+                           "paper/semaphore-reset ", "paper/late-emulator ", "nc/part-program "}) {
+    EXPECT_NE(result.output.find(name), std::string::npos) << name;
+  }
+}
+
+TEST_F(CommandLineTest, exploring_a_sound_scenario_finds_nothing) {
+  const Result result = ltsim("explore paper/three-requests --executions 1000");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.output.find("nothing found: 1000 executions"), std::string::npos) << result.output;
+}
+
+TEST_F(CommandLineTest, the_replay_line_of_a_failure_is_the_last_and_runs_as_it_is_printed) {
+  const Result found = ltsim("explore paper/time-out");
+  EXPECT_EQ(found.exit_code, 1);
+  const std::size_t at = found.output.rfind("  replay:  ");
+  ASSERT_NE(at, std::string::npos) << found.output;
+  std::string line = found.output.substr(at + 11);
+  ASSERT_EQ(line.find('\n'), line.size() - 1) << "the replay line is the last";
+  line.pop_back();
+  const Result replayed = shell(line);
+  EXPECT_EQ(replayed.exit_code, 1);
+  const std::string broken = found.output.substr(found.output.find("invariant: "));
+  EXPECT_NE(replayed.output.find(broken.substr(0, broken.find('\n'))), std::string::npos) << replayed.output;
+  const Result again = shell(line);
+  EXPECT_EQ(again.output, replayed.output);
+}
+
+TEST_F(CommandLineTest, the_json_report_has_the_published_fields) {
+  EXPECT_EQ(ltsim("explore paper/time-out --seed 7 --json report.json").exit_code, 1);
+  const auto report = nlohmann::json::parse(read("report.json"));
+  EXPECT_EQ(report.at("schema"), "ltsim.explore/1");
+  EXPECT_EQ(report.at("scenario"), "paper/time-out");
+  EXPECT_EQ(report.at("strategy"), "random");
+  EXPECT_EQ(report.at("seed"), 7);
+  for (const char* number : {"executions", "decisions", "seconds", "distinct_schedules"})
+    EXPECT_GT(report.at(number), 0) << number;
+  ASSERT_EQ(report.at("failures").size(), 1U);
+  const auto& failure = report.at("failures").at(0);
+  EXPECT_EQ(failure.at("kind"), "invariant");
+  EXPECT_EQ(failure.at("execution"), report.at("executions"));
+  EXPECT_TRUE(failure.at("seed").is_number());
+  EXPECT_FALSE(failure.at("message").get<std::string>().empty());
+  EXPECT_TRUE(std::filesystem::exists(folder_ / failure.at("schedule").get<std::string>()));
+  EXPECT_EQ(report.size(), 9U);
+}
+
+TEST_F(CommandLineTest, a_text_trace_shows_each_step_with_its_value) {
+  EXPECT_EQ(ltsim("explore paper/time-out").exit_code, 1);
+  EXPECT_EQ(ltsim("replay out/paper-time-out.schedule --trace text --out trace.txt").exit_code, 1);
+  const std::string trace = read("trace.txt");
+  EXPECT_NE(trace.find("atomic_store    segment.request[0] := 17"), std::string::npos)
+      << trace.substr(0, 2000);
+  EXPECT_NE(trace.find("SUBMIT 1: 11 12 13"), std::string::npos);
+  EXPECT_NE(trace.find("sem_wait"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, a_schedule_that_no_longer_fits_is_refused_by_line) {
+  write("old.schedule",
+        "ltsim schedule 1\nscenario paper/one-request\nmemory sc\noutcome passed\n"
+        "switch kernel/main before sem_post handoff #1 to emulator/main\n"
+        "switch kernel/main before sem_post handoff #9 to emulator/main\n");
+  const Result result = ltsim("replay old.schedule");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.output.find("old.schedule:6: this line no longer fits"), std::string::npos)
+      << result.output;
+}
+
+TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
+  write("bad.schedule", "ltsim schedule 1\nscenario paper/one-request\nswich a to b\n");
+  write("foreign.schedule", "ltsim schedule 1\nscenario no/such\n");
+  const struct {
+    const char* arguments;
+    const char* message;
+  } cases[] = {{"", "subcommand"},
+               {"explore", "scenarios"},
+               {"explore paper/no-such", "there is no scenario \"paper/no-such\""},
+               {"explore paper/one-request --executions 0", "--executions"},
+               {"explore paper/one-request --strategy clever", "clever"},
+               {"explore paper/one-request paper/time-out --json x", "--json"},
+               {"replay no-such-file", "no-such-file: cannot be read"},
+               {"replay bad.schedule", "bad.schedule:3: \"swich\""},
+               {"replay foreign.schedule", "no/such"},
+               {"explore paper/time-out --out /proc/nowhere", "cannot be written"}};
+  for (const auto& c : cases) {
+    const Result result = ltsim(c.arguments);
+    EXPECT_EQ(result.exit_code, 2) << c.arguments << "\n" << result.output;
+    EXPECT_NE(result.output.find(c.message), std::string::npos) << c.arguments << "\n" << result.output;
+  }
+  EXPECT_EQ(ltsim("--help").exit_code, 0);
+}
+
+}  // namespace

@@ -1,0 +1,109 @@
+// Same build, same seed: the same trace, every time, in every process; and what failed once, fails again from
+// its schedule.
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "sim_clock/check/signal_guard.hpp"
+#include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/random_strategy.hpp"
+
+namespace {
+
+using ltsim::Explorer;
+using ltsim::find_scenario;
+using ltsim::RandomStrategy;
+
+ltsim::World& world() {
+  static ltsim::World only;
+  return only;
+}
+
+/// Trace hashes of the seeds 1 to `count` of a scenario, a line each.
+std::string hashes_of(const char* scenario, unsigned count) {
+  const ltsim::SignalGuard signals;
+  Explorer explorer{world()};
+  RandomStrategy strategy;
+  std::string lines;
+  for (unsigned seed = 1; seed <= count; ++seed) {
+    lines += fmt::format("{:016x}\n", explorer.execute(*find_scenario(scenario), strategy, seed, nullptr));
+  }
+  return lines;
+}
+
+/// The same, from a process of its own: this program, started anew.
+std::string hashes_from_another_process(const std::string& scenario, unsigned count) {
+  const std::string command =
+      fmt::format("'{}' --print-hashes {} {}", LTSIM_DETERMINISM_TEST, scenario, count);
+  FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return "cannot be started";
+  std::string lines;
+  char buffer[4096];
+  for (std::size_t got = fread(buffer, 1, sizeof buffer, pipe); got != 0;
+       got = fread(buffer, 1, sizeof buffer, pipe)) {
+    lines.append(buffer, got);
+  }
+  EXPECT_EQ(pclose(pipe), 0);
+  return lines;
+}
+
+class DeterminismTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(DeterminismTest, two_hundred_seeds_give_the_same_traces_in_two_processes) {
+  constexpr unsigned seeds = 200;
+  const std::string one = hashes_from_another_process(GetParam(), seeds);
+  const std::string other = hashes_from_another_process(GetParam(), seeds);
+  EXPECT_EQ(one.size(), seeds * 17U);
+  EXPECT_EQ(one, other);
+  EXPECT_NE(one.substr(0, 16), one.substr(17, 16)) << "two seeds should not give one trace";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, DeterminismTest,
+                         testing::Values("paper/time-out", "paper/late-emulator", "paper/three-requests",
+                                         "nc/part-program"),
+                         [](const testing::TestParamInfo<const char*>& tested) {
+                           std::string name = tested.param;
+                           for (char& c : name)
+                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+                           return name;
+                         });
+
+TEST(Replay, reproduces_one_hundred_recorded_failures_out_of_one_hundred) {
+  const ltsim::SignalGuard signals;
+  Explorer explorer{world()};
+  RandomStrategy strategy;
+  const ltsim::Scenario& scenario = *find_scenario("paper/time-out");
+  unsigned failures = 0;
+  for (std::uint64_t seed = 1; failures < 100; ++seed) {
+    ASSERT_LT(seed, 100'000U);
+    explorer.execute(scenario, strategy, seed, nullptr);
+    if (world().scheduler().outcome().passed()) continue;
+    ++failures;
+    const ltsim::Failure failure = explorer.record(scenario, strategy, seed);
+    const auto schedule = ltsim::parse_schedule(to_string(failure.schedule));
+    ASSERT_TRUE(schedule) << schedule.error().reason;
+    const ltsim::ReplayReport replayed = explorer.replay(scenario, *schedule, nullptr);
+    EXPECT_EQ(replayed.outcome, failure.outcome);
+    EXPECT_EQ(replayed.trace_hash, failure.trace_hash);
+    EXPECT_FALSE(replayed.divergence);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 4 && std::string_view{argv[1]} == "--print-hashes") {
+    fmt::print("{}", hashes_of(argv[2], static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10))));
+    return 0;
+  }
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,117 @@
+#include "sim_clock/explore/schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim_clock/explore/duration_text.hpp"
+
+namespace ltsim {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* every_kind_of_line = R"(ltsim schedule 1
+scenario  paper/time-out
+memory    sc
+outcome   invariant: I1: the answer to request 1 was delivered for request 2
+
+# a comment
+switch    -                start                                        to emulator/main
+switch    kernel/main      before atomic_load segment.state #3          to emulator/main
+switch    kernel/main      in sem_wait handoff #1                       to emulator/main
+switch    kernel/main      end                                          to emulator/main
+time      kernel/main      before clock_read - #2                       +20ms
+stall     emulator/main    before atomic_store segment.state #1         +1500us
+choose    -                asks delay #1                                7
+)";
+
+TEST(Schedule, reads_every_kind_of_line) {
+  const auto schedule = parse_schedule(every_kind_of_line);
+  ASSERT_TRUE(schedule) << schedule.error().line << ": " << schedule.error().reason;
+  EXPECT_EQ(schedule->scenario, "paper/time-out");
+  EXPECT_EQ(schedule->outcome, OutcomeKind::invariant);
+  EXPECT_EQ(schedule->message, "I1: the answer to request 1 was delivered for request 2");
+  const auto& lines = schedule->deviations;
+  ASSERT_EQ(lines.size(), 7U);
+  EXPECT_EQ(lines[0].anchor, "- start");
+  EXPECT_EQ(lines[1].anchor, "kernel/main before atomic_load segment.state #3");
+  EXPECT_EQ(lines[1].to_task, "emulator/main");
+  EXPECT_EQ(lines[1].line, 8U);
+  EXPECT_EQ(lines[4].kind, Deviation::Kind::pass_time);
+  EXPECT_EQ(lines[4].passes, 20ms);
+  EXPECT_EQ(lines[5].kind, Deviation::Kind::stall);
+  EXPECT_EQ(lines[5].passes, 1500us);
+  EXPECT_EQ(lines[6].kind, Deviation::Kind::choose);
+  EXPECT_EQ(lines[6].answer, 7U);
+}
+
+TEST(Schedule, what_was_written_reads_back_equal) {
+  const auto schedule = parse_schedule(every_kind_of_line);
+  ASSERT_TRUE(schedule);
+  const auto again = parse_schedule(to_string(*schedule));
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_EQ(again->deviations, schedule->deviations);
+  EXPECT_EQ(again->scenario, schedule->scenario);
+  EXPECT_EQ(again->message, schedule->message);
+}
+
+TEST(Schedule, a_message_of_several_lines_is_written_as_one) {
+  Schedule schedule{
+      .scenario = "a/b", .outcome = OutcomeKind::crash, .message = "one\ntwo", .deviations = {}};
+  const auto again = parse_schedule(to_string(schedule));
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_EQ(again->message, "one two");
+}
+
+struct BadSchedule {
+  const char* name;
+  const char* text;
+  std::size_t line;
+  const char* reason_has;
+
+  static std::string name_of(const testing::TestParamInfo<BadSchedule>& tested) { return tested.param.name; }
+};
+
+class BadScheduleTest : public testing::TestWithParam<BadSchedule> {};
+
+TEST_P(BadScheduleTest, is_refused_with_its_line_and_the_way_out) {
+  const auto schedule = parse_schedule(GetParam().text);
+  ASSERT_FALSE(schedule);
+  EXPECT_EQ(schedule.error().line, GetParam().line);
+  EXPECT_NE(schedule.error().reason.find(GetParam().reason_has), std::string::npos)
+      << schedule.error().reason;
+}
+
+#define HEAD "ltsim schedule 1\nscenario a/b\n"
+INSTANTIATE_TEST_SUITE_P(
+    Schedule, BadScheduleTest,
+    testing::Values(
+        BadSchedule{"empty", "", 1, "ltsim schedule 1"},
+        BadSchedule{"foreign_file", "{\"json\": 1}\n", 1, "ltsim schedule 1"},
+        BadSchedule{"later_version", "ltsim schedule 2\n", 1, "ltsim schedule 1"},
+        BadSchedule{"no_scenario", "ltsim schedule 1\nmemory sc\n", 2, "which scenario"},
+        BadSchedule{"unknown_word", HEAD "swich a to b\n", 3, "swich"},
+        BadSchedule{"unknown_outcome", HEAD "outcome lost\n", 3, "lost"},
+        BadSchedule{"unknown_memory", HEAD "memory c11\n", 3, "sc"},
+        BadSchedule{"switch_to_nowhere", HEAD "switch a/b before read x #1\n", 3, "switch TASK before"},
+        BadSchedule{"no_occurrence", HEAD "switch a/b before read x to c/d\n", 3, "#N"},
+        BadSchedule{"bad_occurrence", HEAD "switch a/b before read x #1x to c/d\n", 3, "#N"},
+        BadSchedule{"no_duration", HEAD "time a/b before read x #1 20\n", 3, "+20ms"},
+        BadSchedule{"negative_duration", HEAD "time a/b before read x #1 +-20ms\n", 3, "+20ms"},
+        BadSchedule{"huge_duration", HEAD "stall a/b before read x #1 +9223372036854775807s\n", 3, "+20ms"},
+        BadSchedule{"answer_is_no_number", HEAD "choose a/b asks x #1 many\n", 3, "number"},
+        BadSchedule{"lone_word", HEAD "switch\n", 3, "switch TASK before"}),
+    BadSchedule::name_of);
+
+TEST(DurationText, is_exact_and_short) {
+  EXPECT_EQ(to_text(20ms), "20ms");
+  EXPECT_EQ(to_text(1500us), "1500us");
+  EXPECT_EQ(to_text(2s), "2s");
+  EXPECT_EQ(to_text(1ns), "1ns");
+  EXPECT_EQ(parse_duration("20ms"), 20ms);
+  EXPECT_EQ(parse_duration("ms"), std::nullopt);
+  EXPECT_EQ(parse_duration("20"), std::nullopt);
+  EXPECT_EQ(parse_duration("20 ms"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace ltsim
