@@ -54,13 +54,18 @@ const Scenario& scenario_of_name(const std::string& name) {
   return *scenario;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
+/// @return whether the file could be written
+[[nodiscard]] bool write_file(const std::filesystem::path& path, const std::string& text) {
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   std::ofstream file{path, std::ios::binary};
   file << text;
   file.close();
-  if (!file) throw UsageError{fmt::format("{}: cannot be written", path.string())};
+  return static_cast<bool>(file);
+}
+
+void write_asked_for_file(const std::filesystem::path& path, const std::string& text) {
+  if (!write_file(path, text)) throw UsageError{fmt::format("{}: cannot be written", path.string())};
 }
 
 std::string read_file(const std::string& path) {
@@ -104,9 +109,13 @@ int explore(const ExploreArguments& arguments, std::string_view program) {
     std::vector<std::string> paths;
     for (const Failure& failure : report.failures) {
       paths.push_back(schedule_path(arguments.out_folder, std::string{scenario->name}, paths.size()));
-      write_file(paths.back(), to_string(failure.schedule));
-      fmt::print("{}",
-                 describe(failure, strategy.name(), fmt::format("{} replay {}", program, paths.back())));
+      fmt::print("{}", describe(failure, strategy.name()));
+      // The failure counts, and has been told, also where its file cannot be written.
+      if (write_file(paths.back(), to_string(failure.schedule))) {
+        fmt::print("  replay:  {} replay {}\n", program, paths.back());
+      } else {
+        fmt::print("  {}: cannot be written; the lines above are what it would hold\n", paths.back());
+      }
     }
     found = found || !report.failures.empty();
     if (report.failures.empty()) {
@@ -114,11 +123,11 @@ int explore(const ExploreArguments& arguments, std::string_view program) {
                  scenario->name, report.executions, report.distinct_schedules, report.points, report.seconds);
     }
     if (!arguments.json_file.empty()) {
-      write_file(arguments.json_file, to_json({.scenario = scenario->name,
-                                               .strategy = strategy.name(),
-                                               .seed = arguments.options.seed,
-                                               .report = report,
-                                               .schedule_paths = paths}));
+      write_asked_for_file(arguments.json_file, to_json({.scenario = scenario->name,
+                                                         .strategy = strategy.name(),
+                                                         .seed = arguments.options.seed,
+                                                         .report = report,
+                                                         .schedule_paths = paths}));
     }
   }
   return found ? exit_failure_found : exit_nothing_found;
@@ -136,7 +145,7 @@ int replay(const ReplayArguments& arguments) {
   const ReplayReport report =
       explorer.replay(scenario, *schedule, arguments.trace.empty() ? nullptr : &trace);
   if (!arguments.trace.empty() && arguments.out_file.empty()) fmt::print("{}", trace.text());
-  if (!arguments.out_file.empty()) write_file(arguments.out_file, trace.text());
+  if (!arguments.out_file.empty()) write_asked_for_file(arguments.out_file, trace.text());
   if (report.divergence) {
     const Deviation& deviation = *report.divergence->deviation;
     throw UsageError{fmt::format(

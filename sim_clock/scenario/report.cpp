@@ -7,7 +7,7 @@
 
 namespace ltsim {
 
-std::string describe(const Failure& failure, std::string_view strategy, std::string_view replay_line) {
+std::string describe(const Failure& failure, std::string_view strategy) {
   std::string text = fmt::format(
       "{}  {}: {}\n  execution {}, seed {:#x}, strategy {}; {} choices that differ from the default, at {}\n",
       failure.schedule.scenario, to_string(failure.outcome.kind), failure.outcome.message, failure.execution,
@@ -15,7 +15,6 @@ std::string describe(const Failure& failure, std::string_view strategy, std::str
   for (const Deviation& deviation : failure.schedule.deviations)
     text += fmt::format("    {}\n", to_string(deviation));
   if (failure.count > 1) text += fmt::format("  {} executions failed so\n", failure.count);
-  text += fmt::format("  replay:  {}\n", replay_line);
   return text;
 }
 

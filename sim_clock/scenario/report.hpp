@@ -8,10 +8,8 @@
 
 namespace ltsim {
 
-/// The failure as a person wants it: what broke, the schedule, and last the line that shows it again.
-/// @param replay_line  e.g. "ltsim replay out/paper-time-out.schedule"
-[[nodiscard]] std::string describe(const Failure& failure, std::string_view strategy,
-                                   std::string_view replay_line);
+/// The failure as a person wants it: what broke, and the choices that lead to it.
+[[nodiscard]] std::string describe(const Failure& failure, std::string_view strategy);
 
 struct JsonReport {
   std::string_view scenario;

@@ -13,9 +13,10 @@ namespace {
 using ltsim::OperationKind;
 using ltsim::Segments;
 
-void point(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+/// @return whether a simulated task is about to perform the operation
+bool point(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
   ltsim::Task* const self = ltsim::current_task;
-  if (self == nullptr) return;
+  if (self == nullptr) return false;
   ltsim::Operation operation{.kind = kind, .bytes = static_cast<std::uint8_t>(bytes)};
   if (Segments::contains(address)) {
     const auto place = self->world->segments().locate(address);
@@ -23,12 +24,13 @@ void point(const volatile void* address, std::size_t bytes, OperationKind kind) 
     operation.offset = place.offset;
   }
   self->world->scheduler().point(operation);
+  return true;
 }
 
 }  // namespace
 
-// Outside a task (set-up of a scenario, other threads of the tool) the operation must really be atomic, so
-// the builtins are used throughout, sequentially consistent.
+// Outside a task (other threads of the tool) the operation must really be atomic and ordered. The builtins do
+// that; the one that would cost a fence is spared a task, which is alone anyway.
 #define LTSIM_ATOMIC_UPDATE(bits, type, name, builtin, kind)                                  \
   extern "C" type __tsan_atomic##bits##_##name(volatile type* p, type value, int /*order*/) { \
     point(p, sizeof(type), OperationKind::kind);                                              \
@@ -49,8 +51,12 @@ void point(const volatile void* address, std::size_t bytes, OperationKind kind) 
     return __atomic_load_n(p, __ATOMIC_SEQ_CST);                                                            \
   }                                                                                                         \
   extern "C" void __tsan_atomic##bits##_store(volatile type* p, type value, int /*order*/) {                \
-    point(p, sizeof(type), OperationKind::atomic_store);                                                    \
-    __atomic_store_n(p, value, __ATOMIC_SEQ_CST);                                                           \
+    const bool alone = point(p, sizeof(type), OperationKind::atomic_store);                                 \
+    if (alone) {                                                                                            \
+      __atomic_store_n(p, value, __ATOMIC_RELAXED);                                                         \
+    } else {                                                                                                \
+      __atomic_store_n(p, value, __ATOMIC_SEQ_CST);                                                         \
+    }                                                                                                       \
   }                                                                                                         \
   LTSIM_ATOMIC_UPDATE(bits, type, exchange, __atomic_exchange_n, atomic_exchange)                           \
   LTSIM_ATOMIC_UPDATE(bits, type, fetch_add, __atomic_fetch_add, atomic_update)                             \

@@ -249,19 +249,20 @@ std::size_t Scheduler::ask(ChoiceKind kind, std::span<const std::uint64_t> optio
 }
 
 std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
-  std::size_t before = 0;  // runnable tasks with smaller numbers than `from`: they go to the end
   std::size_t count = 0;
-  for (std::size_t word = 0; word < runnable_.size() && count < runnable_count_; ++word) {
-    for (std::uint64_t bits = runnable_[word]; bits != 0; bits &= bits - 1) {
-      const std::uint64_t id = word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));
-      if (id < from) ++before;
-      options_[count++] = id;
+  const auto append = [&](std::size_t word, std::uint64_t mask) {
+    for (std::uint64_t bits = runnable_[word] & mask; bits != 0; bits &= bits - 1) {
+      options_[count++] = word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));
     }
-  }
-  if (before != 0 && before != count) {
-    std::rotate(options_.begin(), options_.begin() + static_cast<std::ptrdiff_t>(before),
-                options_.begin() + static_cast<std::ptrdiff_t>(count));
-  }
+  };
+  constexpr std::uint64_t all = ~std::uint64_t{0};
+  const std::size_t first_word = from % tasks_max / 64;
+  const std::uint64_t not_before = all << (from % 64);
+  const std::size_t words_count = (tasks_count_ + 63) / 64;
+  append(first_word, not_before);
+  for (std::size_t word = first_word + 1; word < words_count; ++word) append(word, all);
+  for (std::size_t word = 0; word < first_word; ++word) append(word, all);
+  append(first_word, ~not_before);
   return std::span{options_}.first(count);
 }
 

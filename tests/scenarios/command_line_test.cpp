@@ -124,6 +124,15 @@ TEST_F(CommandLineTest, a_schedule_that_no_longer_fits_is_refused_by_line) {
       << result.output;
 }
 
+TEST_F(CommandLineTest, a_failure_is_told_also_where_its_schedule_cannot_be_written) {
+  const Result result = ltsim("explore paper/time-out --out /proc/nowhere");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.output.find("invariant: I"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("    switch    kernel/main"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("/proc/nowhere/paper-time-out.schedule: cannot be written"),
+            std::string::npos);
+}
+
 TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
   write("bad.schedule", "ltsim schedule 1\nscenario paper/one-request\nswich a to b\n");
   write("foreign.schedule", "ltsim schedule 1\nscenario no/such\n");
@@ -138,8 +147,7 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
                {"explore paper/one-request paper/time-out --json x", "--json"},
                {"replay no-such-file", "no-such-file: cannot be read"},
                {"replay bad.schedule", "bad.schedule:3: \"swich\""},
-               {"replay foreign.schedule", "no/such"},
-               {"explore paper/time-out --out /proc/nowhere", "cannot be written"}};
+               {"replay foreign.schedule", "no/such"}};
   for (const auto& c : cases) {
     const Result result = ltsim(c.arguments);
     EXPECT_EQ(result.exit_code, 2) << c.arguments << "\n" << result.output;

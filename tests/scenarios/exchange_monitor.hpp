@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include <boost/container/static_vector.hpp>
+
 #include "protocol/exchange_observer.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -44,7 +46,9 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   void ended(protocol::ExchangeOutcome outcome) noexcept override;
 
  private:
-  using Bytes = std::vector<std::byte>;
+  /// The longest message that is watched.
+  static constexpr std::size_t message_bytes_max = 16;
+  using Bytes = boost::container::static_vector<std::byte, message_bytes_max>;
   struct Exchange {
     Bytes request;
     Bytes answer;
