@@ -49,6 +49,12 @@ TEST_P(SeedTest, a_late_emulator_executes_the_last_request_several_times) {
 
 INSTANTIATE_TEST_SUITE_P(Paper, SeedTest, testing::Range<std::uint64_t>(1, 21));
 
+TEST(Demo, a_counter_without_a_lock_loses_a_part) {
+  const auto report = explore("demo/parts-counter", 1, 1'000);
+  ASSERT_EQ(report.failures.size(), 1U);
+  EXPECT_EQ(report.failures.front().outcome.message, "a part was not counted");
+}
+
 class SoundScenarioTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(SoundScenarioTest, is_never_accused) {
