@@ -40,6 +40,18 @@ class RandomGenerator {
     return result;
   }
 
+  /// `count` random bits, 1 to 32, as a number; one next() lasts for as many of them as it holds.
+  constexpr std::uint32_t bits(unsigned count) noexcept {
+    if (reserve_bits_count_ < count) {
+      reserve_ = next();
+      reserve_bits_count_ = 64;
+    }
+    const auto drawn = static_cast<std::uint32_t>(reserve_ & ((std::uint64_t{1} << count) - 1));
+    reserve_ >>= count;
+    reserve_bits_count_ -= count;
+    return drawn;
+  }
+
   /// Uniform in [0, bound), without bias. bound >= 1.
   /// Source: Daniel Lemire, "Fast random integer generation in an interval" (2019).
   constexpr std::uint32_t below(std::uint32_t bound) noexcept {
@@ -53,6 +65,8 @@ class RandomGenerator {
 
  private:
   std::array<std::uint64_t, 4> state_{};
+  std::uint64_t reserve_ = 0;
+  unsigned reserve_bits_count_ = 0;
 };
 
 }  // namespace ltsim

@@ -21,7 +21,7 @@ class RandomStrategy final : public Strategy {
 
  private:
   RandomGenerator generator_{0};
-  std::uint32_t steps_per_slow_moment_ = 1;
+  unsigned slow_moment_bits_ = 1;  // a slow moment has the probability 2^-bits
 };
 
 }  // namespace ltsim

@@ -118,7 +118,7 @@ void Scheduler::finish_running() noexcept {
   LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
-void Scheduler::point(const Operation& operation) noexcept {
+void Scheduler::point(Operation operation) noexcept {
   Task& self = *running_;
   self.pending = operation;
   clock_.pass(point_cost);

@@ -58,7 +58,7 @@ class Scheduler {
   // --- for the running task ---
 
   /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
-  void point(const Operation& operation) noexcept;
+  void point(Operation operation) noexcept;
 
   enum class Wake : std::uint8_t { signalled, timed_out };
   /// Blocks the running task until wake() for `key`, or until `deadline` (VirtualClock::never: no limit).

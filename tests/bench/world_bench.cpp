@@ -79,6 +79,7 @@ void scenario(benchmark::State& state, const char* name) {
   state.counters["points"] = static_cast<double>(points) / executions;
   state.counters["switches/point"] = seconds / static_cast<double>(points) / seconds_per_switch();
 }
+BENCHMARK_CAPTURE(scenario, handoff, "bench/handoff");
 BENCHMARK_CAPTURE(scenario, one_request, "paper/one-request");
 BENCHMARK_CAPTURE(scenario, three_requests, "paper/three-requests");
 BENCHMARK_CAPTURE(scenario, part_program, "nc/part-program");

@@ -1,56 +1,37 @@
 // The program `ltsim`, run as a user runs it.
 
-#include <sys/wait.h>
-
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/scenarios/shell.hpp"
 
 namespace {
 
-struct Result {
-  int exit_code;
-  std::string output;
-};
+using Result = scenarios::ShellResult;
 
 class CommandLineTest : public testing::Test {
  protected:
-  CommandLineTest()
-      : folder_(std::filesystem::temp_directory_path() / fmt::format("ltsim-test-{}", getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~CommandLineTest() override { std::filesystem::remove_all(folder_); }
-
-  /// Runs a shell line in a folder of the test's own; both streams are kept.
   [[nodiscard]] Result shell(const std::string& line) const {
-    FILE* const pipe = popen(fmt::format("cd '{}' && {} 2>&1", folder_.string(), line).c_str(), "r");
-    Result result{.exit_code = -1, .output = {}};
-    char buffer[4096];
-    for (std::size_t got = fread(buffer, 1, sizeof buffer, pipe); got != 0;
-         got = fread(buffer, 1, sizeof buffer, pipe)) {
-      result.output.append(buffer, got);
-    }
-    result.exit_code = WEXITSTATUS(pclose(pipe));
-    return result;
+    return scenarios::run_in(folder_.path(), line);
   }
   [[nodiscard]] Result ltsim(const std::string& arguments) const {
     return shell(LTSIM_PROGRAM " " + arguments);
   }
 
   [[nodiscard]] std::string read(const char* name) const {
-    std::ifstream file{folder_ / name};
+    std::ifstream file{folder_.path() / name};
     return {std::istreambuf_iterator<char>{file}, {}};
   }
-  void write(const char* name, const std::string& text) const { std::ofstream{folder_ / name} << text; }
+  void write(const char* name, const std::string& text) const {
+    std::ofstream{folder_.path() / name} << text;
+  }
 
-  std::filesystem::path folder_;
+  scenarios::TemporaryFolder folder_;
 };
 
 TEST_F(CommandLineTest, list_shows_each_scenario_with_what_it_is) {
@@ -99,7 +80,7 @@ TEST_F(CommandLineTest, the_json_report_has_the_published_fields) {
   EXPECT_EQ(failure.at("execution"), report.at("executions"));
   EXPECT_TRUE(failure.at("seed").is_number());
   EXPECT_FALSE(failure.at("message").get<std::string>().empty());
-  EXPECT_TRUE(std::filesystem::exists(folder_ / failure.at("schedule").get<std::string>()));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / failure.at("schedule").get<std::string>()));
   EXPECT_EQ(report.size(), 9U);
 }
 

@@ -1,13 +1,9 @@
 // Same build, same seed: the same trace, every time, in every process; and what failed once, fails again from
 // its schedule.
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdio>
+#include <cctype>
 #include <cstdlib>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,6 +11,7 @@
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/explore/random_strategy.hpp"
+#include "tests/scenarios/shell.hpp"
 
 namespace {
 
@@ -41,18 +38,11 @@ std::string hashes_of(const char* scenario, unsigned count) {
 
 /// The same, from a process of its own: this program, started anew.
 std::string hashes_from_another_process(const std::string& scenario, unsigned count) {
-  const std::string command =
-      fmt::format("'{}' --print-hashes {} {}", LTSIM_DETERMINISM_TEST, scenario, count);
-  FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "cannot be started";
-  std::string lines;
-  char buffer[4096];
-  for (std::size_t got = fread(buffer, 1, sizeof buffer, pipe); got != 0;
-       got = fread(buffer, 1, sizeof buffer, pipe)) {
-    lines.append(buffer, got);
-  }
-  EXPECT_EQ(pclose(pipe), 0);
-  return lines;
+  const scenarios::TemporaryFolder folder;
+  const auto result = scenarios::run_in(
+      folder.path(), fmt::format("'{}' --print-hashes {} {}", LTSIM_DETERMINISM_TEST, scenario, count));
+  EXPECT_EQ(result.exit_code, 0);
+  return result.output;
 }
 
 class DeterminismTest : public testing::TestWithParam<const char*> {};

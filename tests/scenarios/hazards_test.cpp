@@ -44,7 +44,7 @@ TEST_P(SeedTest, a_semaphore_reset_after_the_answer_loses_a_wake_up) {
 }
 
 TEST_P(SeedTest, a_late_emulator_executes_the_last_request_several_times) {
-  EXPECT_TRUE(breaks(explore("paper/late-emulator", GetParam(), 1'000), "I5"));
+  EXPECT_TRUE(breaks(explore("paper/late-emulator", GetParam(), 1'000, true), "I5"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, SeedTest, testing::Range<std::uint64_t>(1, 21));

@@ -30,6 +30,17 @@ TEST(RandomGenerator, is_seeded_by_the_reference_values_of_splitmix64) {
   }
 }
 
+TEST(RandomGenerator, single_bits_are_those_of_the_words_from_the_lowest_up) {
+  RandomGenerator words{7};
+  RandomGenerator bits{7};
+  for (int i = 0; i < 3; ++i) {
+    const std::uint64_t word = words.next();
+    for (unsigned bit = 0; bit < 60; bit += 4) EXPECT_EQ(bits.bits(4), (word >> bit) & 15U);
+    EXPECT_EQ(bits.bits(3), (word >> 60U) & 7U);
+    EXPECT_EQ(bits.bits(1), word >> 63U);
+  }
+}
+
 TEST(RandomGenerator, bounded_draws_stay_below_their_bound_and_reach_all_of_it) {
   RandomGenerator generator{1};
   for (const std::uint32_t bound : {1U, 2U, 3U, 7U, 22U}) {

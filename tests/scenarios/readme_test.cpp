@@ -1,0 +1,93 @@
+// What the README shows is what the programs print. A block that begins with "    $ ltsim ..." is run, and
+// must give the lines below it; the lines of the trace must stand in the trace of the schedule that the first
+// block wrote.
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/scenarios/shell.hpp"
+
+namespace {
+
+const std::string shown_program = "./build/release/bin/ltsim";
+const std::string indent = "    ";
+
+std::vector<std::string> lines_of(std::istream& stream) {
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+  return text;
+}
+
+class ReadmeTest : public testing::Test {
+ protected:
+  ReadmeTest() {
+    std::ifstream readme{LTSIM_SOURCE_DIR "/README.md"};
+    readme_ = lines_of(readme);
+  }
+
+  /// What the command prints, with the program as the README calls it.
+  std::vector<std::string> run(const std::string& command) const {
+    const std::string line = replaced(command, shown_program, LTSIM_PROGRAM);
+    std::istringstream output{
+        replaced(scenarios::run_in(folder_.path(), line).output, LTSIM_PROGRAM, shown_program)};
+    return lines_of(output);
+  }
+
+  /// Lines from `begin` to the next blank one, without the indent.
+  [[nodiscard]] std::vector<std::string> block_at(std::size_t begin) const {
+    std::vector<std::string> block;
+    for (std::size_t i = begin; i < readme_.size() && readme_[i].starts_with(indent); ++i) {
+      block.push_back(readme_[i].substr(indent.size()));
+    }
+    return block;
+  }
+
+  scenarios::TemporaryFolder folder_;
+  std::vector<std::string> readme_;
+};
+
+TEST_F(ReadmeTest, commands_print_what_is_shown) {
+  int commands = 0;
+  for (std::size_t i = 0; i < readme_.size(); ++i) {
+    if (!readme_[i].starts_with(indent + "$ ")) continue;
+    ++commands;
+    EXPECT_EQ(run(readme_[i].substr(indent.size() + 2)), block_at(i + 1)) << readme_[i];
+  }
+  EXPECT_EQ(commands, 2);
+}
+
+TEST_F(ReadmeTest, steps_of_the_trace_are_those_of_the_first_schedule) {
+  const auto first = std::find_if(readme_.begin(), readme_.end(),
+                                  [](const auto& line) { return line.starts_with(indent + "$ "); });
+  ASSERT_NE(first, readme_.end());
+  run(first->substr(indent.size() + 2));
+  std::vector<std::string> trace =
+      run(shown_program + " replay out/paper-semaphore-reset.schedule --trace text");
+  for (std::string& line : trace) line.erase(0, line.find_first_not_of(' '));
+  const auto begin = std::find_if(readme_.begin(), readme_.end(), [](const auto& line) {
+    return line.find("us  emulator/main") != std::string::npos;
+  });
+  ASSERT_NE(begin, readme_.end());
+  const auto steps = block_at(static_cast<std::size_t>(begin - readme_.begin()));
+  EXPECT_EQ(steps.size(), 9U);
+  auto from = trace.begin();
+  for (const std::string& step : steps) {
+    const std::string wanted = step.substr(step.find_first_not_of(' '));
+    from = std::find(from, trace.end(), wanted);
+    ASSERT_NE(from, trace.end()) << wanted;
+  }
+}
+
+}  // namespace
