@@ -26,7 +26,7 @@ install_missing() {
   missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
-    sudo -n true 2>/dev/null || die "packages are missing; install them and start again: sudo apt-get install -y $missing" 2
+    sudo -n true 2>/dev/null || die "packages are missing; install them and start again: sudo apt-get update && sudo apt-get install -y --no-install-recommends $missing" 2
     as_root=(sudo -n)
   fi
   say "installing $missing"
@@ -44,7 +44,7 @@ build() {
   mkdir -p build
   say "configuring build/$1"
   cmake --preset "$1" >"$log" 2>&1 || { cat "$log" >&2; die "configuring failed" 3; }
-  say "building build/$1"
+  say "building build/$1 (the first time takes some minutes)"
   if [ -t 1 ]; then
     cmake --build --preset "$1" --parallel "$(nproc)" || die "building failed" 3
   else

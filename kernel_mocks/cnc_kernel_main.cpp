@@ -16,9 +16,9 @@
 
 #include "kernel_mocks/console_report.hpp"
 #include "kernel_mocks/nc_parser.hpp"
-#include "kernel_mocks/paper_flags.hpp"
 #include "kernel_mocks/part_program_file.hpp"
 #include "kernel_mocks/part_program_runner.hpp"
+#include "protocol/paper_command_line.hpp"
 #include "protocol/posix_port_manager.hpp"
 #include "protocol/role_lock.hpp"
 #include "protocol/shared_memory_port_manager.hpp"
@@ -84,7 +84,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--baud", arguments.baud_rate, "Bits per second of the serial device")
       ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
-  add_paper_flags(app, arguments.paper);
+  protocol::add_paper_options(app, arguments.paper, protocol::PaperSide::kernel);
   app.footer(
       "Exit codes: 0 ran to its end, 1 stopped or refused, 2 bad usage or unreadable program, 3 own fault.");
 }

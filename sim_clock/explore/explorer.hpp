@@ -86,6 +86,9 @@ class Explorer {
                         StepListener* listener);
 
  private:
+  /// Whether the seed gives this trace again, or has come to give another one for good.
+  [[nodiscard]] bool repeats(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
+                             std::uint64_t hash);
   /// Runs the seed again, twice, to say where the runs part.
   [[nodiscard]] NotSimulable not_repeatable(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@
 
 namespace ltsim {
 namespace {
+
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
 constexpr int exit_nothing_found = 0;
 constexpr int exit_failure_found = 1;
@@ -90,6 +93,15 @@ int list() {
   return exit_nothing_found;
 }
 
+/// "1000 executions and 2 s"
+std::string describe_limits(const ExploreArguments& arguments) {
+  const bool counted = arguments.options.executions_max != unlimited;
+  const std::string executions =
+      counted ? fmt::format("{} executions", arguments.options.executions_max) : "";
+  if (!arguments.options.seconds_max) return executions;
+  return fmt::format("{}{}{} s", executions, counted ? " and " : "", arguments.seconds);
+}
+
 int explore(const ExploreArguments& arguments, std::string_view program) {
   if (!arguments.json_file.empty() && arguments.scenarios.size() != 1) {
     throw UsageError{"--json writes the report of one scenario; name one"};
@@ -101,9 +113,8 @@ int explore(const ExploreArguments& arguments, std::string_view program) {
   RandomStrategy strategy;
   bool found = false;
   for (const Scenario* const scenario : chosen) {
-    fmt::print("{}  seed {}, strategy {}, at most {} executions{}\n", scenario->name, arguments.options.seed,
-               strategy.name(), arguments.options.executions_max,
-               arguments.options.seconds_max ? fmt::format(" and {} s", arguments.seconds) : "");
+    fmt::print("{}  seed {}, strategy {}, at most {}\n", scenario->name, arguments.options.seed,
+               strategy.name(), describe_limits(arguments));
     std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
     const ExploreReport report = explorer.explore(*scenario, strategy, arguments.options);
     std::vector<std::string> paths;
@@ -207,7 +218,7 @@ int run_command_line(int argc, const char* const* argv) {
     if (!seconds->empty()) {
       explore_arguments.options.seconds_max = std::chrono::duration<double>{explore_arguments.seconds};
       // Whoever gives a time and no number wants the time to decide.
-      if (explore_command->count("--executions") == 0) explore_arguments.options.executions_max = UINT64_MAX;
+      if (explore_command->count("--executions") == 0) explore_arguments.options.executions_max = unlimited;
     }
     return explore(explore_arguments, argv[0]);
   } catch (const CLI::ParseError& error) {

@@ -1,22 +1,24 @@
 #include "kernel_mocks/part_program_file.hpp"
 
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/shell.hpp"
 
 namespace kernel_mocks {
 namespace {
 
 class PartProgramFile : public testing::Test {
  protected:
-  std::string file_with(std::string_view text) {
-    const std::string path =
-        testing::TempDir() + "/" + testing::UnitTest::GetInstance()->current_test_info()->name() + ".nc";
+  [[nodiscard]] std::string file_with(std::string_view text) const {
+    const auto path = folder_.path() / "program.nc";
     std::ofstream{path, std::ios::binary} << text;
-    return path;
+    return path.string();
   }
+
+  test_support::TemporaryFolder folder_;
 };
 
 TEST_F(PartProgramFile, is_read_as_it_is) {

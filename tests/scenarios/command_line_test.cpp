@@ -1,5 +1,6 @@
 // The program `ltsim`, run as a user runs it.
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -8,16 +9,16 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/scenarios/shell.hpp"
+#include "tests/support/shell.hpp"
 
 namespace {
 
-using Result = scenarios::ShellResult;
+using Result = test_support::ShellResult;
 
 class CommandLineTest : public testing::Test {
  protected:
   [[nodiscard]] Result shell(const std::string& line) const {
-    return scenarios::run_in(folder_.path(), line);
+    return test_support::run_in(folder_.path(), line);
   }
   [[nodiscard]] Result ltsim(const std::string& arguments) const {
     return shell(LTSIM_PROGRAM " " + arguments);
@@ -31,7 +32,7 @@ class CommandLineTest : public testing::Test {
     std::ofstream{folder_.path() / name} << text;
   }
 
-  scenarios::TemporaryFolder folder_;
+  test_support::TemporaryFolder folder_;
 };
 
 TEST_F(CommandLineTest, list_shows_each_scenario_with_what_it_is) {
@@ -134,7 +135,20 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
     EXPECT_EQ(result.exit_code, 2) << c.arguments << "\n" << result.output;
     EXPECT_NE(result.output.find(c.message), std::string::npos) << c.arguments << "\n" << result.output;
   }
-  EXPECT_EQ(ltsim("--help").exit_code, 0);
+}
+
+TEST_F(CommandLineTest, every_program_shows_a_printable_help) {
+  for (const char* command :
+       {LTSIM_PROGRAM " --help", LTSIM_PROGRAM " explore --help", LTSIM_PROGRAM " replay --help",
+        PLC_EMULATOR_PROGRAM " --help", CNC_KERNEL_PROGRAM " --help"}) {
+    const Result result = shell(command);
+    EXPECT_EQ(result.exit_code, 0) << command;
+    EXPECT_GT(result.output.size(), 100U) << command;
+    for (const char c : result.output) {
+      ASSERT_TRUE(c == '\n' || std::isprint(static_cast<unsigned char>(c)) != 0)
+          << command << ": " << static_cast<int>(c);
+    }
+  }
 }
 
 }  // namespace

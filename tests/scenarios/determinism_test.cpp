@@ -11,7 +11,7 @@
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/explore/random_strategy.hpp"
-#include "tests/scenarios/shell.hpp"
+#include "tests/support/shell.hpp"
 
 namespace {
 
@@ -38,8 +38,8 @@ std::string hashes_of(const char* scenario, unsigned count) {
 
 /// The same, from a process of its own: this program, started anew.
 std::string hashes_from_another_process(const std::string& scenario, unsigned count) {
-  const scenarios::TemporaryFolder folder;
-  const auto result = scenarios::run_in(
+  const test_support::TemporaryFolder folder;
+  const auto result = test_support::run_in(
       folder.path(), fmt::format("'{}' --print-hashes {} {}", LTSIM_DETERMINISM_TEST, scenario, count));
   EXPECT_EQ(result.exit_code, 0);
   return result.output;

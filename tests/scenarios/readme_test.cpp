@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/scenarios/shell.hpp"
+#include "tests/support/shell.hpp"
 
 namespace {
 
@@ -41,7 +41,7 @@ class ReadmeTest : public testing::Test {
   std::vector<std::string> run(const std::string& command) const {
     const std::string line = replaced(command, shown_program, LTSIM_PROGRAM);
     std::istringstream output{
-        replaced(scenarios::run_in(folder_.path(), line).output, LTSIM_PROGRAM, shown_program)};
+        replaced(test_support::run_in(folder_.path(), line).output, LTSIM_PROGRAM, shown_program)};
     return lines_of(output);
   }
 
@@ -54,7 +54,7 @@ class ReadmeTest : public testing::Test {
     return block;
   }
 
-  scenarios::TemporaryFolder folder_;
+  test_support::TemporaryFolder folder_;
   std::vector<std::string> readme_;
 };
 

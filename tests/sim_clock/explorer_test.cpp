@@ -57,6 +57,19 @@ void remembers_the_last_execution(World& world) {
   world.run();
 }
 
+void initialises_on_first_use(World& world) {
+  world.process("p").start("main", [] {
+    static const int sum = [] {
+      std::atomic<int> counter = 0;
+      for (int i = 0; i < 5; ++i) ++counter;
+      return counter.load();
+    }();
+    std::atomic<int> copy = sum;
+    ++copy;
+  });
+  world.run();
+}
+
 void asks_for_a_number(World& world) {
   world.require(world.choose("number", 5) != 3, "three");
   world.run();
@@ -121,6 +134,12 @@ TEST_F(ExplorerTest, a_variable_that_survives_an_execution_stops_the_exploration
     EXPECT_NE(error.message.find("demo/remembers differ"), std::string::npos) << error.message;
     EXPECT_NE(error.message.find("atomic_store"), std::string::npos) << error.message;
   }
+}
+
+TEST_F(ExplorerTest, what_is_initialised_on_first_use_is_no_surviving_variable) {
+  const Scenario scenario{"demo/first-use", "", &initialises_on_first_use};
+  RandomStrategy strategy;
+  EXPECT_EQ(Explorer{world()}.explore(scenario, strategy, at_most(10)).executions, 10U);
 }
 
 TEST_F(ExplorerTest, a_call_that_is_not_simulated_stops_the_exploration_and_is_named) {

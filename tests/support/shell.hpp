@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace scenarios {
+namespace test_support {
 
 /// An empty folder, removed with all it holds when the object goes.
 class TemporaryFolder {
@@ -28,4 +28,4 @@ struct ShellResult {
 /// Runs one line in `folder`.
 ShellResult run_in(const std::filesystem::path& folder, const std::string& line);
 
-}  // namespace scenarios
+}  // namespace test_support

@@ -1,4 +1,4 @@
-#include "tests/scenarios/shell.hpp"
+#include "tests/support/shell.hpp"
 
 #include <sys/wait.h>
 
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace scenarios {
+namespace test_support {
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "ltsim-test-XXXXXX").string();
@@ -29,4 +29,4 @@ ShellResult run_in(const std::filesystem::path& folder, const std::string& line)
   return result;
 }
 
-}  // namespace scenarios
+}  // namespace test_support
