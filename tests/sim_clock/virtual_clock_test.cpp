@@ -1,5 +1,7 @@
 #include "sim_clock/clock/virtual_clock.hpp"
 
+#include <algorithm>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -77,6 +79,83 @@ TEST(VirtualClock, a_cancelled_timer_is_never_due_and_the_others_keep_their_orde
   std::vector<TaskId> due = take_all_due(clock);
   ASSERT_EQ(due.size(), 10U);
   for (std::size_t i = 1; i < due.size(); ++i) EXPECT_LT((due[i - 1] * 7) % 20, (due[i] * 7) % 20);
+}
+
+// The timers lie in a heap; the last one fills the hole. Here it belongs above the hole: 4 ms under 10 ms
+// would come too late.
+//
+//            1                    1
+//       10       2     ->     4       2
+//     11  12   3   4        10 12   3
+TEST(VirtualClock, a_cancelled_timer_may_be_replaced_by_an_earlier_one) {
+  VirtualClock clock;
+  const auto arm_at_own_number = [&clock](const std::vector<TaskId>& milliseconds) {
+    for (const TaskId id : milliseconds) clock.arm(std::chrono::milliseconds{id}, id);
+  };
+  arm_at_own_number({1, 10, 2, 11, 12, 3, 4});
+  clock.cancel(11);
+  arm_at_own_number({20, 21, 22});
+  clock.pass(1s);
+  EXPECT_EQ(take_all_due(clock), (std::vector<TaskId>{1, 2, 3, 4, 10, 12, 20, 21, 22}));
+}
+
+/// What the clock promises, without a heap.
+class SortedTimers {
+ public:
+  void arm(SimTime deadline, TaskId sleeper) {
+    cancel(sleeper);
+    const auto later = std::find_if(timers_.begin(), timers_.end(),
+                                    [deadline](const Timer& timer) { return timer.deadline > deadline; });
+    timers_.insert(later, Timer{deadline, sleeper});
+  }
+  void cancel(TaskId sleeper) {
+    std::erase_if(timers_, [sleeper](const Timer& timer) { return timer.sleeper == sleeper; });
+  }
+  [[nodiscard]] SimTime next_deadline() const {
+    return timers_.empty() ? VirtualClock::never : timers_.front().deadline;
+  }
+  std::vector<TaskId> take_all_due(SimTime now) {
+    std::vector<TaskId> sleepers;
+    while (next_deadline() <= now && !timers_.empty()) {
+      sleepers.push_back(timers_.front().sleeper);
+      timers_.erase(timers_.begin());
+    }
+    return sleepers;
+  }
+
+ private:
+  struct Timer {
+    SimTime deadline;
+    TaskId sleeper;
+  };
+  std::vector<Timer> timers_;
+};
+
+TEST(VirtualClock, any_sequence_of_calls_gives_what_a_sorted_list_gives) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    std::mt19937 random{seed};
+    const auto below = [&random](unsigned limit) { return static_cast<unsigned>(random() % limit); };
+    VirtualClock clock;
+    SortedTimers reference;
+    for (int step = 0; step < 300; ++step) {
+      const auto sleeper = static_cast<TaskId>(below(60));
+      if (const unsigned action = below(20); action < 12) {
+        const SimTime deadline = clock.now() + SimTime{below(80)};  // few, so that many are equal
+        clock.arm(deadline, sleeper);
+        reference.arm(deadline, sleeper);
+      } else if (action < 19) {
+        clock.cancel(sleeper);
+        reference.cancel(sleeper);
+      } else {
+        clock.pass(SimTime{below(20)});
+        ASSERT_EQ(take_all_due(clock), reference.take_all_due(clock.now()))
+            << "seed " << seed << ", step " << step;
+      }
+      ASSERT_EQ(clock.next_deadline(), reference.next_deadline()) << "seed " << seed << ", step " << step;
+    }
+    clock.pass(1s);
+    ASSERT_EQ(take_all_due(clock), reference.take_all_due(clock.now())) << "seed " << seed;
+  }
 }
 
 TEST(VirtualClock, reset_puts_it_back_to_the_beginning) {
