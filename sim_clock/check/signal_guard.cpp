@@ -21,7 +21,7 @@ void on_signal(int signal, siginfo_t* details, void* /*context*/) {
     return;
   }
   const GhostScope ghost;
-  const bool overflow = signal == SIGSEGV && task->storage->on_guard_page(details->si_addr);
+  const bool overflow = signal == SIGSEGV && task->storage->on_guard(details->si_addr);
   task->world->scheduler().fail(
       OutcomeKind::crash,
       overflow ? fmt::format("{}: stack overflow ({} bytes)", task->name, TaskStorage::stack_bytes)

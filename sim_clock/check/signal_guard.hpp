@@ -1,5 +1,6 @@
-// Turns a signal that the code under test causes (a bad address, a division by zero) into the outcome `crash`
-// of its execution. A signal outside a simulated task is ours, and ends the program as it always would.
+// Turns a signal that the code under test causes (a bad address, a division by zero, libc's own abort after a
+// double free) into the outcome `crash` of its execution. A signal outside a simulated task is ours, and ends
+// the program as it always would.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace ltsim {
 
-/// While it lives, SIGSEGV, SIGBUS, SIGFPE and SIGILL are guarded. One at a time.
+/// While it lives, SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT are guarded. One at a time.
 class SignalGuard {
  public:
   SignalGuard();
@@ -18,7 +19,7 @@ class SignalGuard {
   SignalGuard& operator=(const SignalGuard&) = delete;
 
  private:
-  static constexpr std::array<int, 4> guarded_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL};
+  static constexpr std::array<int, 5> guarded_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
   std::vector<std::byte> stack_;  // a stack overflow leaves no room on the task's own
   stack_t previous_stack_{};

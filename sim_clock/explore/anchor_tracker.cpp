@@ -15,7 +15,6 @@ void AnchorTracker::arrives(const Task& task, const Operation& operation) noexce
 }
 
 void AnchorTracker::performs(const Task& task, const Operation& operation) noexcept {
-  running_ = task.name;
   if (next_ != nullptr) next_->performs(task, operation);
 }
 
@@ -30,9 +29,9 @@ void AnchorTracker::ends(const Task& task) noexcept {
   if (next_ != nullptr) next_->ends(task);
 }
 
-void AnchorTracker::asks(std::string_view what) noexcept {
-  stand_at(fmt::format("{} asks {}", running_, what));
-  if (next_ != nullptr) next_->asks(what);
+void AnchorTracker::asks(const Task* task, std::string_view what) noexcept {
+  stand_at(fmt::format("{} asks {}", task == nullptr ? "-" : task->name, what));
+  if (next_ != nullptr) next_->asks(task, what);
 }
 
 void AnchorTracker::notes(std::string_view text) noexcept {

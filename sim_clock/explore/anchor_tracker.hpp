@@ -24,7 +24,7 @@ class AnchorTracker final : public StepListener {
   void performs(const Task& task, const Operation& operation) noexcept override;
   void blocks(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
-  void asks(std::string_view what) noexcept override;
+  void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;
 
  private:
@@ -33,7 +33,6 @@ class AnchorTracker final : public StepListener {
   const World& world_;
   StepListener* next_;
   std::string anchor_ = "- start";
-  std::string running_ = "-";
   std::unordered_map<std::string, unsigned> visits_;
 };
 

@@ -37,6 +37,10 @@ std::uint64_t Explorer::execute(const Scenario& scenario, Strategy& strategy, st
   strategy.begin_execution(seed);
   world_.reset(strategy, listener);
   scenario.body(world_);
+  world_.end_execution();
+  if (world_.scheduler().run_is_missing()) {
+    throw NotSimulable{fmt::format("{} makes tasks and never calls World::run()", scenario.name)};
+  }
   if (world_.scheduler().outcome().kind == OutcomeKind::unsupported) {
     throw NotSimulable{world_.scheduler().outcome().message};
   }
@@ -125,6 +129,12 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
   const SignalGuard signals;
+  {
+    // What is initialised on first use was so when the schedule was recorded.
+    AnchorTracker anchors{world_, nullptr};
+    ReplayStrategy strategy{schedule.deviations, world_, anchors};
+    execute(scenario, strategy, 0, &anchors);
+  }
   AnchorTracker anchors{world_, listener};
   ReplayStrategy strategy{schedule.deviations, world_, anchors};
   const std::uint64_t hash = execute(scenario, strategy, 0, &anchors);

@@ -1,15 +1,13 @@
 // Runs a scenario again and again under a strategy and reports how it failed.
 //
-// A failing execution is run a second time, with the same seed, to write its schedule down; and of those that
-// pass the 1st, 2nd, 4th, 8th ... are run twice as well. Two runs of a seed that differ mean that something
-// survived from one execution to the next or came from outside: nothing that was found would be worth
-// anything, so exploration stops.
+// The first execution that fails in a new way is run a second time, with the same seed, to write its schedule
+// down; and of those that pass the 1st, 2nd, 4th, 8th ... are run twice as well. Two runs of a seed that
+// differ mean that something survived from one execution to the next or came from outside: nothing that was
+// found would be worth anything, so exploration stops.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

@@ -117,9 +117,13 @@ std::string to_string(const Deviation& deviation) {
   return {};
 }
 
-std::string to_string(const Schedule& schedule) {
-  std::string message = schedule.message;
+std::string one_line(std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
+  return message;
+}
+
+std::string to_string(const Schedule& schedule) {
+  const std::string message = one_line(schedule.message);
   std::string text =
       fmt::format("{}\nscenario  {}\nmemory    {}\noutcome   {}{}{}\n", header, schedule.scenario,
                   only_memory, to_string(schedule.outcome), message.empty() ? "" : ": ", message);

@@ -60,6 +60,9 @@ struct Schedule {
   std::vector<Deviation> deviations;
 };
 
+/// The message as a schedule holds it.
+[[nodiscard]] std::string one_line(std::string message);
+
 /// The file's text.
 [[nodiscard]] std::string to_string(const Schedule& schedule);
 

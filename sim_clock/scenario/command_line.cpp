@@ -167,6 +167,10 @@ int replay(const ReplayArguments& arguments) {
   fmt::print("{}  {}{}{}\n  at {}, trace hash {:016x}\n", scenario.name, to_string(report.outcome.kind),
              report.outcome.message.empty() ? "" : ": ", report.outcome.message, to_text(report.at),
              report.trace_hash);
+  if (report.outcome.kind != schedule->outcome || one_line(report.outcome.message) != schedule->message) {
+    fmt::print("  not as recorded: {}{}{}\n", to_string(schedule->outcome),
+               schedule->message.empty() ? "" : ": ", schedule->message);
+  }
   return report.outcome.passed() ? exit_nothing_found : exit_failure_found;
 }
 

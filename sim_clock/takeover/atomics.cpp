@@ -17,13 +17,11 @@ using ltsim::Segments;
 bool point(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return false;
-  ltsim::Operation operation{.kind = kind, .bytes = static_cast<std::uint8_t>(bytes)};
   if (Segments::contains(address)) {
-    const auto place = self->world->segments().locate(address);
-    operation.object = place.object;
-    operation.offset = place.offset;
+    self->world->segments().access(address, bytes, kind);
+  } else {
+    self->world->scheduler().point({.kind = kind, .bytes = static_cast<std::uint8_t>(bytes)});
   }
-  self->world->scheduler().point(operation);
   return true;
 }
 

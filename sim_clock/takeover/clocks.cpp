@@ -5,6 +5,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 
@@ -15,10 +16,11 @@ using ltsim::current_task;
 
 namespace {
 
-/// @return 0 or EINVAL
+/// @return 0
 int sleep_for(std::chrono::nanoseconds duration) noexcept {
   ltsim::World& world = *current_task->world;
-  world.sleep_until(world.now() + duration);
+  const auto longest = ltsim::VirtualClock::never - world.now();
+  world.sleep_until(world.now() + std::min(duration, longest));
   return 0;
 }
 
@@ -46,6 +48,12 @@ extern "C" int gettimeofday(timeval* into, void* zone) noexcept {
   const timespec time = current_task->world->read_clock(CLOCK_REALTIME);
   *into = {.tv_sec = time.tv_sec, .tv_usec = time.tv_nsec / 1000};
   return 0;
+}
+
+extern "C" int timespec_get(timespec* into, int base) noexcept {
+  if (current_task == nullptr || base != TIME_UTC) return LTSIM_NEXT(timespec_get)(into, base);
+  *into = current_task->world->read_clock(CLOCK_REALTIME);
+  return base;
 }
 
 extern "C" time_t time(time_t* into) noexcept {

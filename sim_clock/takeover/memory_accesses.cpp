@@ -17,13 +17,7 @@ using ltsim::Segments;
 /// Out of line, so that the announcement of an unshared access is a subtraction, a comparison and a return.
 [[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes,
                                      OperationKind kind) noexcept {
-  ltsim::Task* const self = ltsim::current_task;
-  if (self == nullptr) return;
-  const auto place = self->world->segments().locate(address);
-  self->world->scheduler().point({.kind = kind,
-                                  .bytes = static_cast<std::uint8_t>(bytes),
-                                  .object = place.object,
-                                  .offset = place.offset});
+  if (ltsim::current_task != nullptr) ltsim::current_task->world->segments().access(address, bytes, kind);
 }
 
 inline void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {

@@ -42,13 +42,7 @@ constinit NextFunction<void*(void*, int, std::size_t)> next_memset{"memset"};
 constexpr std::size_t piece_bytes = 8;
 
 void point(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
-  if (!Segments::contains(address)) return;
-  auto& world = *ltsim::current_task->world;
-  const auto place = world.segments().locate(address);
-  world.scheduler().point({.kind = kind,
-                           .bytes = static_cast<std::uint8_t>(bytes),
-                           .object = place.object,
-                           .offset = place.offset});
+  if (Segments::contains(address)) ltsim::current_task->world->segments().access(address, bytes, kind);
 }
 
 /// The bytes are moved by instructions, not by a call that would lead back here.

@@ -1,7 +1,12 @@
 // pthread_mutex_*(3), pthread_cond_*(3), pthread_once(3). Initialisers and attributes are libc's own: they
 // only fill memory.
+//
+// A scenario may destroy objects of the code under test after the run, outside any task: a mutex that tasks
+// used is nobody's then, and locking it does nothing.
 
 #include <pthread.h>
+
+#include <cerrno>
 
 #include "sim_clock/takeover/next.hpp"
 #include "sim_clock/world/world.hpp"
@@ -17,20 +22,25 @@ clockid_t clock_of(const pthread_cond_t* condition) noexcept {
   return (condition->__data.__wrefs & monotonic_mask) != 0 ? CLOCK_MONOTONIC : CLOCK_REALTIME;
 }
 
+bool is_valid(const timespec& time) noexcept { return time.tv_nsec >= 0 && time.tv_nsec < 1'000'000'000; }
+
 }  // namespace
 
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().lock(mutex);
+  if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;
   return LTSIM_NEXT(pthread_mutex_lock)(mutex);
 }
 
 extern "C" int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().try_lock(mutex);
+  if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;
   return LTSIM_NEXT(pthread_mutex_trylock)(mutex);
 }
 
 extern "C" int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* deadline) noexcept {
   if (current_task != nullptr) {
+    if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
     return world.mutexes().timed_lock(mutex, world.to_sim_time(CLOCK_REALTIME, *deadline));
   }
@@ -40,6 +50,7 @@ extern "C" int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* d
 extern "C" int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
                                        const timespec* deadline) noexcept {
   if (current_task != nullptr) {
+    if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
     return world.mutexes().timed_lock(mutex, world.to_sim_time(clock, *deadline));
   }
@@ -48,11 +59,13 @@ extern "C" int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
 
 extern "C" int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().unlock(mutex);
+  if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;
   return LTSIM_NEXT(pthread_mutex_unlock)(mutex);
 }
 
 extern "C" int pthread_mutex_destroy(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().destroy(mutex);
+  if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;
   return LTSIM_NEXT(pthread_mutex_destroy)(mutex);
 }
 
@@ -64,6 +77,7 @@ extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mut
 extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
                                       const timespec* deadline) {
   if (current_task != nullptr) {
+    if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
     return world.mutexes().timed_wait(condition, mutex, world.to_sim_time(clock_of(condition), *deadline));
   }
@@ -73,6 +87,7 @@ extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t
 extern "C" int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
                                       const timespec* deadline) {
   if (current_task != nullptr) {
+    if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
     return world.mutexes().timed_wait(condition, mutex, world.to_sim_time(clock, *deadline));
   }

@@ -21,6 +21,7 @@ extern "C" sem_t* sem_open(const char* name, int flags, ...) noexcept {
     va_end(arguments);
   }
   if (current_task != nullptr) return current_task->world->semaphores().open(name, flags, value);
+  if (ltsim::World::refuses_real("sem_open")) return SEM_FAILED;
   return LTSIM_NEXT(sem_open)(name, flags, mode, value);
 }
 
@@ -37,7 +38,8 @@ extern "C" int sem_unlink(const char* name) noexcept {
 }
 
 extern "C" int sem_init(sem_t* semaphore, int shared, unsigned value) noexcept {
-  if (current_task != nullptr) return current_task->world->semaphores().init(semaphore, value);
+  if (current_task != nullptr) return current_task->world->semaphores().init(semaphore, shared != 0, value);
+  if (ltsim::World::refuses_real("sem_init")) return -1;
   return LTSIM_NEXT(sem_init)(semaphore, shared, value);
 }
 

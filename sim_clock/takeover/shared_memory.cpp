@@ -27,7 +27,8 @@ bool is_simulated(int descriptor) noexcept {
 }  // namespace
 
 extern "C" int shm_open(const char* name, int flags, mode_t mode) {
-  if (current_task == nullptr) return LTSIM_NEXT(shm_open)(name, flags, mode);
+  if (current_task == nullptr)
+    return ltsim::World::refuses_real("shm_open") ? -1 : LTSIM_NEXT(shm_open)(name, flags, mode);
   point(OperationKind::shm_open);
   return current_task->world->segments().open(name, flags);
 }
@@ -46,7 +47,7 @@ extern "C" int ftruncate(int descriptor, off_t bytes) noexcept {
 
 extern "C" int fstat(int descriptor, struct stat* into) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(fstat)(descriptor, into);
-  point(OperationKind::shm_open);
+  point(OperationKind::shm_status);
   return current_task->world->segments().status(descriptor, *into);
 }
 
@@ -60,7 +61,7 @@ extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flag
   if (!is_simulated(descriptor))
     return LTSIM_NEXT(mmap)(address, bytes, protection, flags, descriptor, offset);
   point(OperationKind::shm_map);
-  return current_task->world->segments().map(bytes, flags, descriptor, offset);
+  return current_task->world->segments().map(bytes, protection, flags, descriptor, offset);
 }
 
 extern "C" int munmap(void* address, std::size_t bytes) noexcept {

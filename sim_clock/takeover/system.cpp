@@ -23,25 +23,33 @@ namespace {
 constexpr pid_t first_process_id = 1000;
 constexpr int processors = 2;
 
+/// What Linux would call the thread's id.
+pid_t task_number() noexcept {
+  return first_process_id + 100 * (current_task->process + 1) + current_task->id;
+}
+
 /// futex(2) as std::atomic::wait, std::counting_semaphore and the guards of static variables use it.
 long futex(std::uint32_t* word, int operation, std::uint32_t value, const timespec* timeout) noexcept {
   ltsim::World& world = *current_task->world;
+  const bool shared = (operation & FUTEX_PRIVATE_FLAG) == 0;
   switch (operation & ~(FUTEX_PRIVATE_FLAG | FUTEX_CLOCK_REALTIME)) {
     case FUTEX_WAIT:  // the time-out is relative
       return world.mutexes().futex_wait(word, value,
                                         timeout == nullptr
                                             ? ltsim::VirtualClock::never
                                             : world.now() + std::chrono::seconds{timeout->tv_sec} +
-                                                  std::chrono::nanoseconds{timeout->tv_nsec});
+                                                  std::chrono::nanoseconds{timeout->tv_nsec},
+                                        shared);
     case FUTEX_WAIT_BITSET:  // absolute
       return world.mutexes().futex_wait(
           word, value,
           timeout == nullptr
               ? ltsim::VirtualClock::never
               : world.to_sim_time((operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC,
-                                  *timeout));
+                                  *timeout),
+          shared);
     case FUTEX_WAKE:
-      return world.mutexes().futex_wake(word, value);
+      return world.mutexes().futex_wake(word, value, shared);
     default:
       world.unsupported(fmt::format("futex(2) with operation {}", operation));
       return -1;
@@ -55,6 +63,17 @@ extern "C" pid_t getpid() noexcept {
   return first_process_id + current_task->process;
 }
 
+extern "C" pid_t gettid() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(gettid)();
+  return task_number();
+}
+
+extern "C" long sysconf(int name) noexcept {
+  if (current_task != nullptr && (name == _SC_NPROCESSORS_ONLN || name == _SC_NPROCESSORS_CONF))
+    return processors;
+  return LTSIM_NEXT(sysconf)(name);
+}
+
 extern "C" int get_nprocs() noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(get_nprocs)();
   return processors;
@@ -64,7 +83,7 @@ extern "C" int get_nprocs() noexcept {
 // asks World::choose().
 extern "C" ssize_t getrandom(void* buffer, std::size_t bytes, unsigned flags) {
   if (current_task == nullptr) return LTSIM_NEXT(getrandom)(buffer, bytes, flags);
-  ltsim::RandomGenerator generator{current_task->id};
+  ltsim::RandomGenerator generator{current_task->world->next_random_draw()};
   for (std::size_t i = 0; i < bytes; ++i)
     static_cast<unsigned char*>(buffer)[i] = static_cast<unsigned char>(generator.next());
   return static_cast<ssize_t>(bytes);
@@ -85,7 +104,7 @@ extern "C" long syscall(long number, ...) noexcept {
       return futex(reinterpret_cast<std::uint32_t*>(arguments[0]), static_cast<int>(arguments[1]),
                    static_cast<std::uint32_t>(arguments[2]), reinterpret_cast<const timespec*>(arguments[3]));
     case SYS_gettid:
-      return first_process_id + 100 * (current_task->process + 1) + current_task->id;
+      return task_number();
     default:
       current_task->world->unsupported(fmt::format("syscall(2) with number {}", number));
       return -1;

@@ -1,6 +1,8 @@
 // How a task ends badly: abort(3), a failed assert(3), exit(3). libc's stdio buffers are flushed by nobody,
 // as with the real calls.
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <exception>
 
@@ -59,20 +61,18 @@ extern "C" void __assert_fail(const char* expression, const char* file, unsigned
   __builtin_unreachable();
 }
 
-extern "C" void exit(int status) noexcept {
-  if (current_task == nullptr) {
-    LTSIM_NEXT(exit)(status);
-  } else {
-    fail(ltsim::OutcomeKind::unsupported, "exit(3), which would end the simulator");
+// exit(3) and its kind would end the simulator and every result with it.
+#define LTSIM_EXIT(name)                                                                           \
+  extern "C" void name(int status) noexcept {                                                      \
+    if (current_task == nullptr) {                                                                 \
+      LTSIM_NEXT(name)(status);                                                                    \
+    } else {                                                                                       \
+      fail(ltsim::OutcomeKind::unsupported, #name "() was called, which would end the simulator"); \
+    }                                                                                              \
+    __builtin_unreachable();                                                                       \
   }
-  __builtin_unreachable();
-}
 
-extern "C" void _exit(int status) {
-  if (current_task == nullptr) {
-    LTSIM_NEXT(_exit)(status);
-  } else {
-    fail(ltsim::OutcomeKind::unsupported, "_exit(2), which would end the simulator");
-  }
-  __builtin_unreachable();
-}
+LTSIM_EXIT(exit)
+LTSIM_EXIT(_exit)
+LTSIM_EXIT(_Exit)
+LTSIM_EXIT(quick_exit)

@@ -1,26 +1,46 @@
 // pthread_create(3), joining, and the destructors of thread_local objects. pthread_self() needs no takeover:
 // it reads the thread pointer, and each task has its own.
+//
+// A scenario may destroy objects of the code under test after the run, outside any task. Joining a thread
+// that only existed in the world then does nothing.
 
 #include <pthread.h>
+
+#include <cerrno>
 
 #include "sim_clock/takeover/next.hpp"
 #include "sim_clock/world/world.hpp"
 
 using ltsim::current_task;
 
+namespace {
+
+bool is_simulated(pthread_t thread) noexcept {
+  return ltsim::TaskStorage::is_of_a_task(reinterpret_cast<const void*>(thread));
+}
+
+}  // namespace
+
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                               void* argument) noexcept {
-  if (current_task != nullptr) return current_task->world->threads().create(thread, start, argument);
+  if (current_task != nullptr) {
+    int state = PTHREAD_CREATE_JOINABLE;
+    if (attributes != nullptr) pthread_attr_getdetachstate(attributes, &state);
+    return current_task->world->threads().create(thread, state == PTHREAD_CREATE_DETACHED, start, argument);
+  }
+  if (ltsim::World::refuses_real("pthread_create")) return EAGAIN;
   return LTSIM_NEXT(pthread_create)(thread, attributes, start, argument);
 }
 
 extern "C" int pthread_join(pthread_t thread, void** result) {
   if (current_task != nullptr) return current_task->world->threads().join(thread, result);
+  if (is_simulated(thread)) return 0;
   return LTSIM_NEXT(pthread_join)(thread, result);
 }
 
 extern "C" int pthread_detach(pthread_t thread) noexcept {
   if (current_task != nullptr) return current_task->world->threads().detach(thread);
+  if (is_simulated(thread)) return 0;
   return LTSIM_NEXT(pthread_detach)(thread);
 }
 

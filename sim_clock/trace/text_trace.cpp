@@ -8,15 +8,6 @@
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
-namespace {
-
-bool changes_memory(OperationKind kind) noexcept {
-  return kind == OperationKind::write || kind == OperationKind::atomic_store ||
-         kind == OperationKind::atomic_exchange || kind == OperationKind::atomic_update;
-}
-
-}  // namespace
-
 void TextTrace::arrives(const Task& /*task*/, const Operation& /*operation*/) noexcept { finish_write(); }
 
 void TextTrace::performs(const Task& task, const Operation& operation) noexcept {
@@ -42,9 +33,9 @@ void TextTrace::ends(const Task& task) noexcept {
   line(task.name, "ends", "");
 }
 
-void TextTrace::asks(std::string_view what) noexcept {
+void TextTrace::asks(const Task* task, std::string_view what) noexcept {
   finish_write();
-  line("", "asks", what);
+  line(task == nullptr ? "" : task->name, "asks", what);
 }
 
 void TextTrace::notes(std::string_view text) noexcept {

@@ -2,7 +2,7 @@
 //
 //     12.300us  kernel/main      atomic_store   segment.state          := 1
 //     12.400us  kernel/main      sem_post       handoff
-//      1.012ms  emulator/main    atomic_load    segment.state          = 1
+//   1012.000us  emulator/main    atomic_load    segment.state          = 1
 //
 // Of a memory access the value is shown as an unsigned number in the machine's byte order; ":=" is what was
 // written.
@@ -25,7 +25,7 @@ class TextTrace final : public StepListener {
   void performs(const Task& task, const Operation& operation) noexcept override;
   void blocks(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
-  void asks(std::string_view what) noexcept override;
+  void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;
 
   /// All lines so far, the value of the last write included.

@@ -28,10 +28,23 @@ Operation operation_on(OperationKind kind, ObjectId object = 0) noexcept {
   return {.kind = kind, .object = object};
 }
 
+/// What is not meant for several processes wakes only those who reach it at the same address: in a segment,
+/// tasks of the same process. The bits for it are glibc's: nptl/pthreadP.h, PTHREAD_MUTEX_PSHARED_BIT and
+/// __PTHREAD_COND_SHARED_MASK.
+WaitKey wait_key(const void* address, bool shared) noexcept {
+  return shared ? Segments::canonical(address) : reinterpret_cast<WaitKey>(address);
+}
+
 /// Conditions and futex words share their addresses with nothing else that is waited for, but a mutex may be
 /// the first member of a structure whose address is waited for too.
-WaitKey mutex_key(const void* address) noexcept {
-  return Segments::canonical(address) | std::uint64_t{1} << 61U;
+WaitKey mutex_key(const void* address, std::int32_t kind) noexcept {
+  constexpr std::int32_t shared_between_processes = 128;
+  return wait_key(address, (kind & shared_between_processes) != 0) | std::uint64_t{1} << 61U;
+}
+
+WaitKey condition_key(const pthread_cond_t* condition) noexcept {
+  constexpr unsigned shared_between_processes = 1;
+  return wait_key(condition, (condition->__data.__wrefs & shared_between_processes) != 0);
 }
 
 }  // namespace
@@ -87,7 +100,7 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimT
     if ((state.kind & kind_mask) == PTHREAD_MUTEX_ERRORCHECK) return EDEADLK;
   }
   while (state.owner_plus_one != 0) {
-    if (world_.scheduler().block(mutex_key(address), deadline) == Scheduler::Wake::timed_out &&
+    if (world_.scheduler().block(mutex_key(address, state.kind), deadline) == Scheduler::Wake::timed_out &&
         state.owner_plus_one != 0) {
       return ETIMEDOUT;
     }
@@ -100,15 +113,24 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimT
 int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
   State& state = resolve(mutex);
   world_.scheduler().point(operation_on(OperationKind::mutex_unlock, state.object));
-  if (state.owner_plus_one != current_task->id + 1U) {
-    if ((state.kind & kind_mask) != PTHREAD_MUTEX_NORMAL) return EPERM;
-    const GhostScope ghost;
-    world_.scheduler().fail(OutcomeKind::assertion,
-                            fmt::format("{} is unlocked by a task that does not hold it",
-                                        world_.objects().object_name(state.object)));
-  }
+  if (const int error = check_owner(state); error != 0) return error;
   if (--state.locked_count == 0) release(state, mutex);
   return 0;
+}
+
+int Mutexes::check_owner(const State& state) noexcept {
+  if (state.owner_plus_one == current_task->id + 1U) return 0;
+  if ((state.kind & kind_mask) != PTHREAD_MUTEX_NORMAL) return EPERM;
+  const std::string& task = current_task->name;
+  const GhostScope ghost;
+  world_.scheduler().fail(OutcomeKind::assertion,
+                          fmt::format("{} is released by {}, which does not hold it",
+                                      world_.objects().object_name(state.object), task));
+  return EPERM;
+}
+
+bool Mutexes::belongs_to_an_execution(const pthread_mutex_t* mutex) noexcept {
+  return World::is_execution_number(reinterpret_cast<const State*>(mutex)->execution);
 }
 
 int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
@@ -120,7 +142,7 @@ int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
 
 void Mutexes::release(State& state, const void* address) noexcept {
   state.owner_plus_one = 0;
-  world_.scheduler().wake(mutex_key(address), 1);
+  world_.scheduler().wake(mutex_key(address, state.kind), 1);
 }
 
 int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {
@@ -135,10 +157,12 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
                         SimTime deadline) noexcept {
   State& state = resolve(mutex);
   world_.scheduler().point(operation_on(kind, state.object));
+  if (const int error = check_owner(state); error != 0) return error;
   const std::uint32_t locked_count = state.locked_count;
   release(state, mutex);
-  const auto wake = world_.scheduler().block(Segments::canonical(condition), deadline);
-  while (state.owner_plus_one != 0) world_.scheduler().block(mutex_key(mutex), VirtualClock::never);
+  const auto wake = world_.scheduler().block(condition_key(condition), deadline);
+  while (state.owner_plus_one != 0)
+    world_.scheduler().block(mutex_key(mutex, state.kind), VirtualClock::never);
   state.owner_plus_one = current_task->id + 1U;
   state.locked_count = locked_count;
   return wake == Scheduler::Wake::timed_out ? ETIMEDOUT : 0;
@@ -146,17 +170,17 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
 
 int Mutexes::signal(pthread_cond_t* condition) noexcept {
   world_.scheduler().point(operation_on(OperationKind::cond_signal));
-  world_.scheduler().wake(Segments::canonical(condition), 1);
+  world_.scheduler().wake(condition_key(condition), 1);
   return 0;
 }
 
 int Mutexes::broadcast(pthread_cond_t* condition) noexcept {
   world_.scheduler().point(operation_on(OperationKind::cond_broadcast));
-  world_.scheduler().wake(Segments::canonical(condition), tasks_max);
+  world_.scheduler().wake(condition_key(condition), tasks_max);
   return 0;
 }
 
-int Mutexes::once(pthread_once_t* control, void (*initialise)()) noexcept {
+int Mutexes::once(pthread_once_t* control, void (*initialise)()) {
   // PTHREAD_ONCE_INIT is 0. What was initialised in an earlier execution stays initialised, like every
   // global.
   constexpr int running = 1;
@@ -165,28 +189,35 @@ int Mutexes::once(pthread_once_t* control, void (*initialise)()) noexcept {
   while (*control == running) world_.scheduler().block(Segments::canonical(control), VirtualClock::never);
   if (*control == done) return 0;
   *control = running;
-  initialise();
+  try {
+    initialise();
+  } catch (...) {
+    *control = 0;  // the next one may try
+    world_.scheduler().wake(Segments::canonical(control), tasks_max);
+    throw;
+  }
   *control = done;
   world_.scheduler().wake(Segments::canonical(control), tasks_max);
   return 0;
 }
 
-int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline) noexcept {
+int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline,
+                        bool shared) noexcept {
   world_.scheduler().point(operation_on(OperationKind::futex_wait));
   if (*word != expected) {
     errno = EAGAIN;
     return -1;
   }
-  if (world_.scheduler().block(Segments::canonical(word), deadline) == Scheduler::Wake::timed_out) {
+  if (world_.scheduler().block(wait_key(word, shared), deadline) == Scheduler::Wake::timed_out) {
     errno = ETIMEDOUT;
     return -1;
   }
   return 0;
 }
 
-int Mutexes::futex_wake(const std::uint32_t* word, std::size_t count_max) noexcept {
+int Mutexes::futex_wake(const std::uint32_t* word, std::size_t count_max, bool shared) noexcept {
   world_.scheduler().point(operation_on(OperationKind::futex_wake));
-  return static_cast<int>(world_.scheduler().wake(Segments::canonical(word), count_max));
+  return static_cast<int>(world_.scheduler().wake(wait_key(word, shared), count_max));
 }
 
 }  // namespace ltsim

@@ -39,13 +39,17 @@ class Mutexes {
   int signal(pthread_cond_t* condition) noexcept;
   int broadcast(pthread_cond_t* condition) noexcept;
 
-  int once(pthread_once_t* control, void (*initialise)()) noexcept;
+  /// An exception of `initialise` passes through; then the next one may try.
+  int once(pthread_once_t* control, void (*initialise)());
+
+  /// Whether a task of some execution has used this mutex: outside any task it is nobody's then.
+  [[nodiscard]] static bool belongs_to_an_execution(const pthread_mutex_t* mutex) noexcept;
 
   /// FUTEX_WAIT: blocks while the word still has the value `expected`.
   /// @return 0; or -1 with errno EAGAIN or ETIMEDOUT
-  int futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline) noexcept;
+  int futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline, bool shared) noexcept;
   /// FUTEX_WAKE. @return tasks woken
-  int futex_wake(const std::uint32_t* word, std::size_t count_max) noexcept;
+  int futex_wake(const std::uint32_t* word, std::size_t count_max, bool shared) noexcept;
 
  private:
   struct State;
@@ -54,6 +58,9 @@ class Mutexes {
   int acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept;
   int wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
                  SimTime deadline) noexcept;
+  /// @return 0; or EPERM where the mutex's kind checks its owner. Otherwise the execution ends as an
+  /// assertion.
+  int check_owner(const State& state) noexcept;
   void release(State& state, const void* address) noexcept;
 
   World& world_;

@@ -5,6 +5,12 @@
 #include <fmt/format.h>
 
 namespace ltsim {
+void make_one_word(std::string& name) {
+  if (name.empty()) name.push_back('_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }, '_');
+}
+
 void ObjectNames::reset() noexcept {
   names_count_ = 0;
   regions_count_ = 0;
@@ -13,10 +19,8 @@ void ObjectNames::reset() noexcept {
 ObjectId ObjectNames::add(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   if (names_count_ == names_.size()) names_.emplace_back();
-  std::string& stored = names_[names_count_];
-  stored.assign(name);
-  std::replace_if(
-      stored.begin(), stored.end(), [](char c) { return c == ' ' || c == '\t' || c == '\n'; }, '_');
+  names_[names_count_].assign(name);
+  make_one_word(names_[names_count_]);
   return static_cast<ObjectId>(++names_count_);
 }
 
@@ -28,6 +32,7 @@ void ObjectNames::name_region(std::string_view object_name, std::uint32_t offset
   entry.offset = offset;
   entry.bytes = bytes;
   entry.name.assign(region);
+  make_one_word(entry.name);
 }
 
 std::string ObjectNames::name(const Operation& operation) const {

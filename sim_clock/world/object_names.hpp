@@ -15,6 +15,9 @@
 
 namespace ltsim {
 
+/// Makes of a name what schedules can hold: one word. Blanks become '_', nothing becomes "_".
+void make_one_word(std::string& name);
+
 class ObjectNames {
  public:
   void reset() noexcept;

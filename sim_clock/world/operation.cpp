@@ -66,6 +66,8 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "thread_end";
     case OperationKind::shm_open:
       return "shm_open";
+    case OperationKind::shm_status:
+      return "shm_status";
     case OperationKind::shm_unlink:
       return "shm_unlink";
     case OperationKind::shm_resize:

@@ -40,6 +40,7 @@ enum class OperationKind : std::uint8_t {
   thread_join,
   thread_end,
   shm_open,
+  shm_status,
   shm_unlink,
   shm_resize,
   shm_map,
@@ -53,6 +54,10 @@ enum class OperationKind : std::uint8_t {
 
 [[nodiscard]] constexpr bool is_memory_access(OperationKind kind) noexcept {
   return kind <= OperationKind::atomic_update;
+}
+
+[[nodiscard]] constexpr bool changes_memory(OperationKind kind) noexcept {
+  return is_memory_access(kind) && kind != OperationKind::read && kind != OperationKind::atomic_load;
 }
 
 /// Number of a named thing of the world: a semaphore, a segment, a mutex; 0 is "no object".

@@ -22,8 +22,12 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   runnable_count_ = 0;
   stalled_count_ = 0;
   for (std::size_t i = 0; i < tasks_count_; ++i) {
-    tasks_[i]->body = nullptr;
-    tasks_[i]->thread_local_destructors.clear();
+    Task& task = *tasks_[i];
+    // Of a task that was dropped nothing is unwound, and so nothing that its body holds is destroyed either.
+    if (task.state != Task::State::finished)
+      static_cast<void>(new std::function<void()>(std::move(task.body)));
+    task.body = nullptr;
+    task.thread_local_destructors.clear();
   }
   tasks_count_ = 0;
   unfinished_count_ = 0;
@@ -34,6 +38,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   hash_ = 0;
   time_is_a_choice_ = true;
   clock_was_read_ = false;
+  has_run_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -42,12 +47,21 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
 Task& Scheduler::create_task(ProcessId process, std::string_view name, std::function<void()> body) {
   if (tasks_count_ == tasks_max) {
     fail(OutcomeKind::unsupported, fmt::format("more than {} tasks in one world", tasks_max));
+    return *tasks_.back();  // during set-up; nothing will run
   }
   if (tasks_count_ == tasks_.size()) {
     tasks_.push_back(std::make_unique<Task>());
     tasks_.back()->storage = std::make_unique<TaskStorage>();
   }
   Task& task = *tasks_[tasks_count_];
+  task.name.assign(world_.process_name(process)).append("/").append(name);
+  make_one_word(task.name);
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    if (tasks_[i]->name != task.name) continue;
+    fail(OutcomeKind::unsupported,
+         fmt::format("two tasks called {}: a schedule could not tell them apart", task.name));
+    return *tasks_[i];  // during set-up; nothing will run
+  }
   task.world = &world_;
   task.id = static_cast<TaskId>(tasks_count_++);
   task.process = process;
@@ -55,7 +69,6 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.detached = false;
   task.joined = false;
   task.pending = Operation{};
-  task.name.assign(world_.process_name(process)).append("/").append(name);
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
@@ -68,10 +81,11 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
 
 void Scheduler::run() {
   LTSIM_CHECK(current_task == nullptr);
-  if (!outcome_.passed() || tasks_count_ == 0) return;
+  has_run_ = true;
+  if (!outcome_.passed() || unfinished_count_ == 0) return;
   main_context_.adopt_current();
-  const TaskId first = runnable_count_ == 1 ? TaskId{0} : choose_task(runnable_tasks(0));
-  running_ = tasks_[first].get();
+  const auto options = runnable_tasks(0);
+  running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options)].get();
   Context::switch_between(main_context_, running_->context);
 }
 
@@ -180,7 +194,11 @@ std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
 std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept {
   LTSIM_CHECK(count >= 1 && count <= options_.size());
   if (count == 1) return 0;
-  if (listener_ != nullptr) listener_->asks(what);
+  if (listener_ != nullptr) {
+    std::string question{what};
+    make_one_word(question);
+    listener_->asks(running_, question);
+  }
   for (std::size_t i = 0; i < count; ++i) options_[i] = i;
   const std::size_t chosen = ask(ChoiceKind::scenario, std::span{options_}.first(count));
   mix(chosen);

@@ -54,6 +54,8 @@ class Scheduler {
   /// Runs the tasks until all have finished or the execution has failed. Tasks that have not finished are
   /// dropped where they stand: nothing is unwound.
   void run();
+  /// Whether tasks were made and never run.
+  [[nodiscard]] bool run_is_missing() const noexcept { return tasks_count_ != 0 && !has_run_; }
 
   // --- for the running task ---
 
@@ -131,6 +133,7 @@ class Scheduler {
   std::uint64_t hash_ = 0;
   bool time_is_a_choice_ = true;
   bool clock_was_read_ = false;
+  bool has_run_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

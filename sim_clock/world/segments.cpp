@@ -16,6 +16,20 @@
 // This file calls mmap(2) and its kind for the simulator itself: with current_task set they would be the
 // simulated ones.
 namespace ltsim {
+namespace {
+
+constexpr std::size_t page_bytes = 4096;
+
+constexpr std::size_t page_end(std::size_t bytes) noexcept {
+  return (bytes + page_bytes - 1) / page_bytes * page_bytes;
+}
+
+std::uint32_t offset_of(const volatile void* address) noexcept {
+  return static_cast<std::uint32_t>((reinterpret_cast<std::uintptr_t>(address) - Segments::range_begin) &
+                                    (Segments::segment_bytes_max - 1));
+}
+
+}  // namespace
 
 Segments::Segments(World& world) : world_(world) {
   memory_ = memfd_create("ltsim-segments", MFD_CLOEXEC);
@@ -49,7 +63,12 @@ void Segments::reset() noexcept {
   descriptors_.clear();
 }
 
-int Segments::open(std::string_view name, int flags) noexcept {
+int Segments::open(std::string_view path, int flags) noexcept {
+  const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);  // "/x" and "x" are one object
+  if (name.empty() || name.find('/') != std::string_view::npos) {
+    errno = EINVAL;
+    return -1;
+  }
   Segment* segment = find(name);
   if (segment != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
@@ -71,12 +90,13 @@ int Segments::open(std::string_view name, int flags) noexcept {
   } else if ((flags & O_TRUNC) != 0) {
     segment->bytes = 0;
   }
-  descriptors_.push_back(index_of(*segment));
+  descriptors_.push_back(
+      {.segment = index_of(*segment), .open = true, .writable = (flags & O_ACCMODE) != O_RDONLY});
   return first_descriptor + static_cast<int>(descriptors_.size() - 1);
 }
 
-int Segments::unlink(std::string_view name) noexcept {
-  Segment* const segment = find(name);
+int Segments::unlink(std::string_view path) noexcept {
+  Segment* const segment = find(path.substr(path.starts_with('/') ? 1 : 0));
   if (segment == nullptr) {
     errno = ENOENT;
     return -1;
@@ -100,7 +120,9 @@ int Segments::resize(int descriptor, off_t bytes) noexcept {
     world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
   }
   if (wanted > segment->bytes) {
-    std::memset(all_ + (index_of(*segment) << window_shift) + segment->bytes, 0, wanted - segment->bytes);
+    // The rest of the last page, too: it can be touched, and must not show what another execution left.
+    std::memset(all_ + (index_of(*segment) << window_shift) + segment->bytes, 0,
+                page_end(wanted) - segment->bytes);
   }
   segment->bytes = wanted;
   return 0;
@@ -122,23 +144,29 @@ int Segments::status(int descriptor, struct stat& into) noexcept {
 }
 
 int Segments::close(int descriptor) noexcept {
-  if (of_descriptor(descriptor) == nullptr) {
+  Descriptor* const found = find_descriptor(descriptor);
+  if (found == nullptr) {
     errno = EBADF;
     return -1;
   }
-  descriptors_[static_cast<std::size_t>(descriptor - first_descriptor)] = closed_descriptor;
+  found->open = false;
   return 0;
 }
 
-void* Segments::map(std::size_t bytes, int flags, int descriptor, off_t offset) noexcept {
+void* Segments::map(std::size_t bytes, int protection, int flags, int descriptor, off_t offset) noexcept {
   const Segment* const segment = of_descriptor(descriptor);
   if (segment == nullptr) {
     errno = EBADF;
     return MAP_FAILED;
   }
   const auto begin = static_cast<std::size_t>(offset);
-  if (offset < 0 || begin % 4096 != 0 || bytes == 0 || begin + bytes > segment_bytes_max) {
+  if (offset < 0 || begin % page_bytes != 0 || bytes == 0 || begin + bytes > segment_bytes_max) {
     errno = EINVAL;
+    return MAP_FAILED;
+  }
+  const bool writable = (protection & PROT_WRITE) != 0;
+  if (writable && !find_descriptor(descriptor)->writable) {
+    errno = EACCES;
     return MAP_FAILED;
   }
   if ((flags & (MAP_PRIVATE | MAP_FIXED)) != 0) {
@@ -158,6 +186,7 @@ void* Segments::map(std::size_t bytes, int flags, int descriptor, off_t offset) 
       window.has_memory = true;
     }
     window.mapped = true;
+    window.writable = writable;
     window.bytes = begin + bytes;
     return address + begin;
   }
@@ -165,25 +194,38 @@ void* Segments::map(std::size_t bytes, int flags, int descriptor, off_t offset) 
   return MAP_FAILED;
 }
 
-int Segments::unmap(void* address, std::size_t /*bytes*/) noexcept {
-  Window& window = windows_[window_of(address)];
-  if (!window.mapped) {
+int Segments::unmap(void* address, std::size_t bytes) noexcept {
+  const std::size_t number = window_of(address);
+  Window& window = windows_[number];
+  if (!window.mapped || process_of_window(number) != current_task->process) {
     errno = EINVAL;
     return -1;
+  }
+  if (page_end(bytes) < page_end(window.bytes) - offset_of(address)) {
+    world_.unsupported("munmap of a part of a shared memory object");
   }
   window.mapped = false;
   return 0;
 }
 
-Segments::Place Segments::locate(const volatile void* address) noexcept {
+void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+  const Place place = locate(address, kind);
+  world_.scheduler().point({.kind = kind,
+                            .bytes = static_cast<std::uint8_t>(bytes),
+                            .object = place.object,
+                            .offset = place.offset});
+  static_cast<void>(locate(address, kind));
+}
+
+Segments::Place Segments::locate(const volatile void* address, OperationKind kind) noexcept {
   const std::size_t number = window_of(address);
   const Segment& segment = segments_[segment_of_window(number)];
-  const auto offset = static_cast<std::uint32_t>((reinterpret_cast<std::uintptr_t>(address) - range_begin) &
-                                                 (segment_bytes_max - 1));
+  const std::uint32_t offset = offset_of(address);
   const Window& window = windows_[number];
   // Linux maps whole pages: bytes between the end of the object and the end of its last page can be touched.
-  const std::size_t pages_end = (std::min(window.bytes, segment.bytes) + 4095) & ~std::size_t{4095};
-  if (!window.mapped || offset >= pages_end) [[unlikely]] {
+  const std::size_t pages_end = page_end(std::min(window.bytes, segment.bytes));
+  const bool is_mapped = window.mapped && process_of_window(number) == current_task->process;
+  if (!is_mapped || offset >= pages_end || (changes_memory(kind) && !window.writable)) [[unlikely]] {
     const GhostScope ghost;
     world_.scheduler().fail(
         OutcomeKind::crash,
@@ -217,11 +259,15 @@ Segments::Segment* Segments::find(std::string_view name) noexcept {
   return nullptr;
 }
 
-Segments::Segment* Segments::of_descriptor(int descriptor) noexcept {
+Segments::Descriptor* Segments::find_descriptor(int descriptor) noexcept {
   const auto index = static_cast<std::size_t>(descriptor - first_descriptor);
-  if (!is_descriptor(descriptor) || index >= descriptors_.size() || descriptors_[index] == closed_descriptor)
-    return nullptr;
-  return &segments_[descriptors_[index]];
+  if (!is_descriptor(descriptor) || index >= descriptors_.size() || !descriptors_[index].open) return nullptr;
+  return &descriptors_[index];
+}
+
+Segments::Segment* Segments::of_descriptor(int descriptor) noexcept {
+  const Descriptor* const found = find_descriptor(descriptor);
+  return found == nullptr ? nullptr : &segments_[found->segment];
 }
 
 }  // namespace ltsim

@@ -52,22 +52,18 @@ class Segments {
   void reset() noexcept;
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
-  int open(std::string_view name, int flags) noexcept;
-  int unlink(std::string_view name) noexcept;
+  int open(std::string_view path, int flags) noexcept;
+  int unlink(std::string_view path) noexcept;
   int resize(int descriptor, off_t bytes) noexcept;
   int status(int descriptor, struct stat& into) noexcept;
   int close(int descriptor) noexcept;
-  void* map(std::size_t bytes, int flags, int descriptor, off_t offset) noexcept;
+  void* map(std::size_t bytes, int protection, int flags, int descriptor, off_t offset) noexcept;
   int unmap(void* address, std::size_t bytes) noexcept;
 
-  /// Object and offset of an address in the range.
-  struct Place {
-    ObjectId object;
-    std::uint32_t offset;
-  };
-  /// Ends the execution as a crash if `address` is not mapped (any more) or lies behind the end of its
-  /// segment.
-  [[nodiscard]] Place locate(const volatile void* address) noexcept;
+  /// The running task is about to access memory in the range: scheduling point. Ends the execution as a crash
+  /// if the task's process has not mapped the address (any more), or not for writing, or if it lies behind
+  /// the end of its segment; before the point, and again after it, for the mapping may have gone meanwhile.
+  void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
 
   /// What memory holds now where `operation` acts, as an unsigned number; of longer accesses the first eight
   /// bytes.
@@ -87,16 +83,33 @@ class Segments {
   struct Window {
     bool has_memory = false;  // the address range is backed by the segment's bytes; kept between executions
     bool mapped = false;      // the simulated process has it mapped
-    std::size_t bytes = 0;    // from the window's begin, as mapped
+    bool writable = false;
+    std::size_t bytes = 0;  // from the window's begin, as mapped
   };
 
   [[nodiscard]] static std::size_t window_of(const volatile void* address) noexcept {
     return (reinterpret_cast<std::uintptr_t>(address) - range_begin) >> window_shift;
   }
+  [[nodiscard]] static std::size_t process_of_window(std::size_t window) noexcept {
+    return window / (mappings_max * segments_max);
+  }
   [[nodiscard]] static std::size_t segment_of_window(std::size_t window) noexcept {
     return window / mappings_max % segments_max;
   }
+  struct Descriptor {
+    std::size_t segment;
+    bool open = true;
+    bool writable = false;
+  };
+  struct Place {
+    ObjectId object;
+    std::uint32_t offset;
+  };
+  /// Ends the execution as a crash if the running task cannot access the address so.
+  [[nodiscard]] Place locate(const volatile void* address, OperationKind kind) noexcept;
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
+  /// @return null for a descriptor that is closed or never was
+  [[nodiscard]] Descriptor* find_descriptor(int descriptor) noexcept;
   [[nodiscard]] Segment* of_descriptor(int descriptor) noexcept;
   [[nodiscard]] std::size_t index_of(const Segment& segment) const noexcept {
     return static_cast<std::size_t>(&segment - segments_.data());
@@ -108,8 +121,7 @@ class Segments {
   std::array<Segment, segments_max> segments_;
   std::size_t segments_count_ = 0;
   std::array<Window, windows_count> windows_;
-  std::vector<std::size_t> descriptors_;  // segment index; closed_descriptor when closed
-  static constexpr std::size_t closed_descriptor = segments_max;
+  std::vector<Descriptor> descriptors_;
 };
 
 }  // namespace ltsim

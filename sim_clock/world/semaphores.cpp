@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -19,13 +20,24 @@ Operation operation_on(OperationKind kind, ObjectId object = 0) noexcept {
   return {.kind = kind, .object = object};
 }
 
-/// Tasks wait for the object, through whichever handle they reach it.
-WaitKey key_of(ObjectId object) noexcept { return std::uint64_t{1} << 62U | object; }
+/// "/x" and "x" are one semaphore; there are no folders.
+/// @return nothing for a name that glibc refuses
+std::optional<std::string_view> plain_name(std::string_view name) noexcept {
+  if (name.starts_with('/')) name.remove_prefix(1);
+  if (name.empty() || name.find('/') != std::string_view::npos) return std::nullopt;
+  return name;
+}
 
 }  // namespace
 
-sem_t* Semaphores::open(std::string_view name, int flags, unsigned value) noexcept {
+sem_t* Semaphores::open(std::string_view path, int flags, unsigned value) noexcept {
   world_.scheduler().point(operation_on(OperationKind::sem_open));
+  const auto plain = plain_name(path);
+  if (!plain) {
+    errno = EINVAL;
+    return SEM_FAILED;
+  }
+  const std::string_view name = *plain;
   Semaphore* semaphore = find(name);
   if (semaphore != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
@@ -46,13 +58,13 @@ sem_t* Semaphores::open(std::string_view name, int flags, unsigned value) noexce
 }
 
 int Semaphores::close(sem_t* handle) noexcept {
-  resolve(handle, OperationKind::sem_close);
+  arrive_at(handle, OperationKind::sem_close);
   return 0;
 }
 
-int Semaphores::unlink(std::string_view name) noexcept {
+int Semaphores::unlink(std::string_view path) noexcept {
   world_.scheduler().point(operation_on(OperationKind::sem_unlink));
-  Semaphore* const semaphore = find(name);
+  Semaphore* const semaphore = find(plain_name(path).value_or(""));
   if (semaphore == nullptr) {
     errno = ENOENT;
     return -1;
@@ -61,18 +73,19 @@ int Semaphores::unlink(std::string_view name) noexcept {
   return 0;
 }
 
-int Semaphores::init(sem_t* handle, unsigned value) noexcept {
+int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
   world_.scheduler().point(operation_on(OperationKind::sem_init));
   if (value > value_max) {
     errno = EINVAL;
     return -1;
   }
   std::memcpy(handle, &create({}, fmt::format("semaphore-{}", count_ + 1), value), sizeof(Handle));
+  semaphores_[count_ - 1].shared = shared;
   return 0;
 }
 
 int Semaphores::destroy(sem_t* handle) noexcept {
-  resolve(handle, OperationKind::sem_destroy);
+  arrive_at(handle, OperationKind::sem_destroy);
   std::memset(handle, 0, sizeof(Handle));
   return 0;
 }
@@ -82,7 +95,7 @@ int Semaphores::wait(sem_t* handle) noexcept {
 }
 
 int Semaphores::try_wait(sem_t* handle) noexcept {
-  Semaphore& semaphore = resolve(handle, OperationKind::sem_trywait);
+  Semaphore& semaphore = arrive_at(handle, OperationKind::sem_trywait);
   if (semaphore.value == 0) {
     errno = EAGAIN;
     return -1;
@@ -100,25 +113,25 @@ int Semaphores::timed_wait(sem_t* handle, clockid_t clock, const timespec& deadl
 }
 
 int Semaphores::post(sem_t* handle) noexcept {
-  Semaphore& semaphore = resolve(handle, OperationKind::sem_post);
+  Semaphore& semaphore = arrive_at(handle, OperationKind::sem_post);
   if (semaphore.value == value_max) {
     errno = EOVERFLOW;
     return -1;
   }
   ++semaphore.value;
-  world_.scheduler().wake(key_of(semaphore.object), 1);
+  world_.scheduler().wake(key_of(semaphore), 1);
   return 0;
 }
 
 int Semaphores::value(sem_t* handle, int& into) noexcept {
-  into = static_cast<int>(resolve(handle, OperationKind::sem_getvalue).value);
+  into = static_cast<int>(arrive_at(handle, OperationKind::sem_getvalue).value);
   return 0;
 }
 
 int Semaphores::wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept {
-  Semaphore& semaphore = resolve(handle, kind);
+  Semaphore& semaphore = arrive_at(handle, kind);
   while (semaphore.value == 0) {
-    if (world_.scheduler().block(key_of(semaphore.object), deadline) == Scheduler::Wake::timed_out &&
+    if (world_.scheduler().block(key_of(semaphore), deadline) == Scheduler::Wake::timed_out &&
         semaphore.value == 0) {
       errno = ETIMEDOUT;
       return -1;
@@ -136,6 +149,7 @@ sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, un
   semaphore.object = world_.objects().add(shown_name);
   semaphore.value = value;
   semaphore.linked = !name.empty();
+  semaphore.shared = true;
   sem_t& handle = handles_[count_];
   const Handle content{.execution = world_.execution_number(), .index = static_cast<std::uint32_t>(count_)};
   std::memcpy(&handle, &content, sizeof content);
@@ -158,9 +172,17 @@ Semaphores::Semaphore& Semaphores::resolve(sem_t* handle, OperationKind kind) no
     world_.scheduler().fail(OutcomeKind::crash,
                             fmt::format("{} on memory that holds no semaphore", to_string(kind)));
   }
-  Semaphore& semaphore = semaphores_[found.index];
-  world_.scheduler().point(operation_on(kind, semaphore.object));
-  return semaphore;
+  return semaphores_[found.index];
+}
+
+Semaphores::Semaphore& Semaphores::arrive_at(sem_t* handle, OperationKind kind) noexcept {
+  world_.scheduler().point(operation_on(kind, resolve(handle, kind).object));
+  return resolve(handle, kind);
+}
+
+WaitKey Semaphores::key_of(const Semaphore& semaphore) noexcept {
+  const std::uint64_t process = semaphore.shared ? 0 : current_task->process + 1U;
+  return std::uint64_t{1} << 62U | process << 32U | semaphore.object;
 }
 
 }  // namespace ltsim

@@ -15,6 +15,7 @@
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/world/handle.hpp"
 #include "sim_clock/world/operation.hpp"
+#include "sim_clock/world/task.hpp"
 
 namespace ltsim {
 
@@ -34,10 +35,10 @@ class Semaphores {
   void reset() noexcept { count_ = 0; }
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
-  sem_t* open(std::string_view name, int flags, unsigned value) noexcept;
+  sem_t* open(std::string_view path, int flags, unsigned value) noexcept;
   int close(sem_t* handle) noexcept;
-  int unlink(std::string_view name) noexcept;
-  int init(sem_t* handle, unsigned value) noexcept;
+  int unlink(std::string_view path) noexcept;
+  int init(sem_t* handle, bool shared, unsigned value) noexcept;
   int destroy(sem_t* handle) noexcept;
   int wait(sem_t* handle) noexcept;
   int try_wait(sem_t* handle) noexcept;
@@ -51,6 +52,8 @@ class Semaphores {
     ObjectId object = 0;
     unsigned value = 0;
     bool linked = false;
+    bool shared =
+        true;  // between processes; a post of another process does not wake who waits for one that is not
   };
 
   /// @return its handle
@@ -58,6 +61,9 @@ class Semaphores {
   [[nodiscard]] Semaphore* find(std::string_view name) noexcept;
   /// Ends the execution as a crash if the memory holds no semaphore of this execution.
   Semaphore& resolve(sem_t* handle, OperationKind kind) noexcept;
+  /// resolve(), scheduling point, and resolve() again: the semaphore may have gone meanwhile.
+  Semaphore& arrive_at(sem_t* handle, OperationKind kind) noexcept;
+  [[nodiscard]] static WaitKey key_of(const Semaphore& semaphore) noexcept;
   int wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept;
 
   World& world_;

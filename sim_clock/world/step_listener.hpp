@@ -23,8 +23,8 @@ class StepListener {
   virtual void blocks(const Task& task) noexcept = 0;
   /// `task` has ended; the choice of the next task follows.
   virtual void ends(const Task& task) noexcept = 0;
-  /// The scenario asks for a value; the choice follows.
-  virtual void asks(std::string_view what) noexcept = 0;
+  /// The scenario asks for a value, in a task or (null) outside; the choice follows.
+  virtual void asks(const Task* task, std::string_view what) noexcept = 0;
   /// A remark of the scenario or of its checks.
   virtual void notes(std::string_view text) noexcept = 0;
 

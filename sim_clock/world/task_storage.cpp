@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -67,6 +67,12 @@ const std::vector<ThreadLocals>& modules_to_reset() {
   return modules;
 }
 
+/// Of all tasks of all worlds; a scenario may hold a thread of a task longer than the execution lasts.
+std::vector<const void*>& thread_pointers_of_tasks() {
+  static std::vector<const void*> all;
+  return all;
+}
+
 // Words of glibc's thread control block that a new thread inherits: x86-64, glibc sysdeps/x86_64/nptl/tls.h,
 // tcbhead_t.
 constexpr std::size_t self_tcb = 0;
@@ -77,12 +83,12 @@ constexpr std::size_t pointer_guard = 48;
 }  // namespace
 
 TaskStorage::TaskStorage() {
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  stack_base_ = mmap(nullptr, stack_bytes + page, PROT_READ | PROT_WRITE,
-                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
+  stack_base_ = mmap(nullptr, guard_bytes + stack_bytes, PROT_NONE,
+                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_NORESERVE, -1, 0);
   LTSIM_CHECK(stack_base_ != MAP_FAILED);
-  LTSIM_CHECK(mprotect(stack_base_, page, PROT_NONE) == 0);
-  stack_top_ = static_cast<char*>(stack_base_) + page + stack_bytes;
+  LTSIM_CHECK(mprotect(static_cast<char*>(stack_base_) + guard_bytes, stack_bytes, PROT_READ | PROT_WRITE) ==
+              0);
+  stack_top_ = static_cast<char*>(stack_base_) + guard_bytes + stack_bytes;
 
   thread_pointer_ = _dl_allocate_tls(nullptr);
   LTSIM_CHECK(thread_pointer_ != nullptr);
@@ -92,9 +98,11 @@ TaskStorage::TaskStorage() {
   std::memcpy(block + self_thread, &thread_pointer_, sizeof thread_pointer_);
   std::memcpy(block + stack_guard, own + stack_guard, sizeof(std::uintptr_t));
   std::memcpy(block + pointer_guard, own + pointer_guard, sizeof(std::uintptr_t));
+  thread_pointers_of_tasks().push_back(thread_pointer_);
 }
 
 TaskStorage::~TaskStorage() {
+  std::erase(thread_pointers_of_tasks(), thread_pointer_);
   _dl_deallocate_tls(thread_pointer_, true);
   munmap(stack_base_,
          static_cast<std::size_t>(static_cast<char*>(stack_top_) - static_cast<char*>(stack_base_)));
@@ -110,7 +118,12 @@ void TaskStorage::reset() noexcept {
   std::memset(static_cast<char*>(thread_pointer_) + errno_from_thread_pointer, 0, sizeof errno);
 }
 
-bool TaskStorage::on_guard_page(const void* address) const noexcept {
+bool TaskStorage::is_of_a_task(const void* thread_pointer) noexcept {
+  const auto& all = thread_pointers_of_tasks();
+  return std::find(all.begin(), all.end(), thread_pointer) != all.end();
+}
+
+bool TaskStorage::on_guard(const void* address) const noexcept {
   const auto* const at = static_cast<const char*>(address);
   const auto* const base = static_cast<const char*>(stack_base_);
   return at >= base && at < static_cast<const char*>(stack_top_) - stack_bytes;

@@ -14,7 +14,10 @@ class TaskStorage {
  public:
   static constexpr std::size_t stack_bytes = 256 * 1024;
 
-  /// Maps the stack (with a guard page below it) and allocates the thread-local block.
+  /// Below each stack: large enough that no ordinary frame of a function jumps over it.
+  static constexpr std::size_t guard_bytes = 8 * 1024 * 1024;
+
+  /// Maps the stack (with guard_bytes without access below it) and allocates the thread-local block.
   TaskStorage();
   ~TaskStorage();
   TaskStorage(const TaskStorage&) = delete;
@@ -25,7 +28,10 @@ class TaskStorage {
 
   [[nodiscard]] void* thread_pointer() const noexcept { return thread_pointer_; }
   [[nodiscard]] void* stack_top() const noexcept { return stack_top_; }
-  [[nodiscard]] bool on_guard_page(const void* address) const noexcept;
+  [[nodiscard]] bool on_guard(const void* address) const noexcept;
+  /// Whether a value of pthread_t, or of the FS base, belongs to a task of this program, of whichever
+  /// execution.
+  [[nodiscard]] static bool is_of_a_task(const void* thread_pointer) noexcept;
 
   /// To be called once on the new stack, with the new storage in place, before any other code runs there.
   static void finish_set_up_of_current() noexcept;

@@ -8,11 +8,13 @@
 
 namespace ltsim {
 
-int Threads::create(pthread_t* thread, void* (*start)(void*), void* argument) noexcept {
+int Threads::create(pthread_t* thread, bool detached, void* (*start)(void*), void* argument) noexcept {
   Scheduler& scheduler = world_.scheduler();
   scheduler.point({.kind = OperationKind::thread_create});
   const ProcessId process = current_task->process;
-  Task& task = scheduler.create_task(process, fmt::format("thread-{}", ++created_count_), {});
+  Task& task =
+      scheduler.create_task(process, fmt::format("thread-{}", world_.next_thread_number(process)), {});
+  task.detached = detached;
   task.body = [&task, start, argument] { task.result = start(argument); };
   *thread = reinterpret_cast<pthread_t>(task.storage->thread_pointer());  // what pthread_self() says there
   return 0;

@@ -11,10 +11,9 @@ struct Task;
 class Threads {
  public:
   explicit Threads(World& world) noexcept : world_(world) {}
-  void reset() noexcept { created_count_ = 0; }
 
   // The calls, for the running task; they return 0 or an error number as POSIX.1-2017 lists them.
-  int create(pthread_t* thread, void* (*start)(void*), void* argument) noexcept;
+  int create(pthread_t* thread, bool detached, void* (*start)(void*), void* argument) noexcept;
   int join(pthread_t thread, void** result) noexcept;
   int detach(pthread_t thread) noexcept;
 
@@ -22,7 +21,6 @@ class Threads {
   [[nodiscard]] Task* find(pthread_t thread) noexcept;
 
   World& world_;
-  unsigned created_count_ = 0;
 };
 
 }  // namespace ltsim

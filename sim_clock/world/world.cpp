@@ -1,5 +1,9 @@
 #include "sim_clock/world/world.hpp"
 
+#include <sys/single_threaded.h>
+
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sim_clock/check/self_check.hpp"
@@ -10,20 +14,53 @@ void Process::start(std::string_view name, std::function<void()> body) {
   world_.scheduler().create_task(id_, name, std::move(body));
 }
 
-World::World() = default;
+namespace {
+
+bool a_world_exists = false;
+World* in_execution = nullptr;
+
+}  // namespace
+
+World::World() {
+  LTSIM_CHECK(!a_world_exists);
+  a_world_exists = true;
+  // Tasks are threads: libstdc++ must not take its short cuts for programs with one thread only, which leave
+  // reference counts and guards of static variables without protection.
+  __libc_single_threaded = 0;
+}
+
+World::~World() {
+  a_world_exists = false;
+  in_execution = nullptr;
+}
+
+void World::end_execution() noexcept { in_execution = nullptr; }
+
+bool World::refuses_real(std::string_view call) {
+  if (in_execution == nullptr) return false;
+  in_execution->unsupported(
+      fmt::format("{} was called by the scenario outside its tasks: the tasks would not see what it makes. "
+                  "Call it in a task",
+                  call));
+  return true;
+}
 
 Process& World::process(std::string_view name) {
   for (std::size_t i = 0; i < processes_count_; ++i) {
     if (processes_[i]->name() == name) return *processes_[i];
   }
+  if (processes_count_ == Segments::processes_max) {
+    unsupported(fmt::format("more than {} processes in one world", Segments::processes_max));
+    return *processes_.back();  // set-up goes on, but nothing will run
+  }
   const std::size_t id = processes_count_++;
-  LTSIM_CHECK(id < Segments::processes_max);
   if (id == processes_.size()) processes_.emplace_back();
   // The next execution of a scenario makes the same processes in the same order: their objects are used
   // again.
   if (processes_[id] == nullptr || processes_[id]->name() != name) {
     processes_[id] = std::make_unique<Process>(*this, static_cast<ProcessId>(id), name);
   }
+  processes_[id]->threads_created_count_ = 0;
   return *processes_[id];
 }
 
@@ -41,13 +78,15 @@ std::string World::blocked_in(std::string_view task_name) const {
 }
 
 void World::reset(Strategy& strategy, StepListener* listener) {
-  ++execution_number_;
+  static std::uint64_t executions_ever = 0;  // of all worlds
+  execution_number_ = execution_number_mark << execution_number_bits | ++executions_ever;
+  random_draws_count_ = 0;
+  in_execution = this;
   scheduler_.reset(strategy, listener);
   objects_.reset();
   segments_.reset();
   semaphores_.reset();
   mutexes_.reset();
-  threads_.reset();
   processes_count_ = 0;
 }
 

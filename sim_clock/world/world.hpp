@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <ctime>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,14 +44,18 @@ class Process {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:
+  friend class World;
+
   World& world_;
   ProcessId id_;
   std::string name_;
+  unsigned threads_created_count_ = 0;  // in this execution
 };
 
 class World {
  public:
   World();
+  ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
@@ -111,10 +116,17 @@ class World {
 
   // --- for the explorer ---
 
-  /// Forgets the last execution. `listener` may be null.
+  /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
+  /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
+  void end_execution() noexcept;
 
   // --- for the takeover functions ---
+
+  /// Outside any task, but while a scenario sets up or checks: a real kernel object made here would not be
+  /// the simulated one that the tasks see. Notes that as unsupported.
+  /// @return whether that is so, and the call must fail
+  [[nodiscard]] static bool refuses_real(std::string_view call);
 
   [[nodiscard]] Scheduler& scheduler() noexcept { return scheduler_; }
   [[nodiscard]] const Scheduler& scheduler() const noexcept { return scheduler_; }
@@ -125,8 +137,18 @@ class World {
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
 
-  /// 1 for the first execution of this program, and so on: never the same twice.
+  /// Never the same twice in a program, and nothing that ordinary memory holds by chance.
   [[nodiscard]] std::uint64_t execution_number() const noexcept { return execution_number_; }
+  /// Whether some world gave that number to an execution.
+  [[nodiscard]] static bool is_execution_number(std::uint64_t number) noexcept {
+    return number >> execution_number_bits == execution_number_mark;
+  }
+  /// Calls so far for random bytes: the next ones are others, in each execution the same.
+  [[nodiscard]] std::uint64_t next_random_draw() noexcept { return random_draws_count_++; }
+  /// Number of the next thread that the process creates, from 1.
+  [[nodiscard]] unsigned next_thread_number(ProcessId id) noexcept {
+    return ++processes_[id]->threads_created_count_;
+  }
   [[nodiscard]] const std::string& process_name(ProcessId id) const noexcept {
     return processes_[id]->name();
   }
@@ -146,6 +168,9 @@ class World {
   [[nodiscard]] static WaitKey join_key(TaskId task) noexcept { return std::uint64_t{1} << 60U | task; }
 
  private:
+  static constexpr unsigned execution_number_bits = 40;
+  static constexpr std::uint64_t execution_number_mark = 0x6c7453;
+
   Scheduler scheduler_{*this};
   ObjectNames objects_;
   Segments segments_{*this};
@@ -156,6 +181,7 @@ class World {
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
   std::uint64_t execution_number_ = 0;
+  std::uint64_t random_draws_count_ = 0;
 };
 
 }  // namespace ltsim

@@ -142,6 +142,30 @@ TEST_F(ExplorerTest, what_is_initialised_on_first_use_is_no_surviving_variable) 
   EXPECT_EQ(Explorer{world()}.explore(scenario, strategy, at_most(10)).executions, 10U);
 }
 
+TEST_F(ExplorerTest, a_scenario_that_forgets_to_run_is_told_so) {
+  const Scenario scenario{"demo/forgets", "", [](World& world) { world.process("p").start("main", [] {}); }};
+  RandomStrategy strategy;
+  EXPECT_THROW(static_cast<void>(Explorer{world()}.explore(scenario, strategy, at_most(10))),
+               Explorer::NotSimulable);
+}
+
+TEST_F(ExplorerTest, names_with_blanks_and_questions_of_tasks_survive_the_way_through_a_file) {
+  const Scenario scenario{"demo/blanks", "", [](World& world) {
+                            world.process("cnc kernel").start("main task", [&world] {
+                              world.require(world.choose("how many", 3) != 2, "two");
+                            });
+                            world.run();
+                          }};
+  Explorer explorer{world()};
+  RandomStrategy strategy;
+  const ExploreReport report = explorer.explore(scenario, strategy, at_most(100));
+  ASSERT_EQ(report.failures.size(), 1U);
+  const auto schedule = parse_schedule(to_string(report.failures.front().schedule));
+  ASSERT_TRUE(schedule) << schedule.error().reason;
+  EXPECT_EQ(schedule->deviations.front().anchor, "cnc_kernel/main_task asks how_many #1");
+  EXPECT_EQ(explorer.replay(scenario, *schedule, nullptr).outcome.message, "two");
+}
+
 TEST_F(ExplorerTest, a_call_that_is_not_simulated_stops_the_exploration_and_is_named) {
   const Scenario scenario{"demo/rand", "", [](World& world) {
                             world.process("p").start("main", [] { static_cast<void>(rand()); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +24,10 @@ class DefaultStrategy final : public Strategy {
   }
   [[nodiscard]] SlowMoment slow_moment(SimTime /*until_next_timer*/) noexcept override { return {}; }
 };
+
+inline void PrintTo(const Outcome& outcome, std::ostream* out) {
+  *out << to_string(outcome.kind) << ": " << outcome.message;
+}
 
 class WorldTest : public testing::Test {
  protected:
@@ -49,6 +54,7 @@ class WorldTest : public testing::Test {
     world().reset(strategy, nullptr);
     setup(world());
     world().run();
+    world().end_execution();
     return world().scheduler().outcome();
   }
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 
 #include "tests/sim_clock/world_fixture.hpp"
 
@@ -152,6 +153,65 @@ TEST_F(SegmentsTest, an_unlocked_increment_across_processes_loses_updates) {
     }
   });
   EXPECT_EQ(outcome, (Outcome{OutcomeKind::invariant, "an increment was lost"}));
+}
+
+TEST_F(SegmentsTest, a_pointer_of_another_process_is_a_crash) {
+  const Outcome outcome = run([](World& world) {
+    const auto pointer = std::make_shared<unsigned char*>(nullptr);
+    world.process("a").start("main", [pointer] { *pointer = open_and_map(); });
+    world.process("b").start("main", [pointer] {
+      open_and_map();
+      **pointer = 1;
+    });
+  });
+  EXPECT_EQ(outcome.kind, OutcomeKind::crash) << outcome.message;
+}
+
+TEST_F(SegmentsTest, a_write_to_a_mapping_for_reading_is_a_crash_and_a_read_is_not) {
+  for (const bool write : {false, true}) {
+    const Outcome outcome = run([write](World& world) {
+      world.process("a").start("main", [write, &world] {
+        open_and_map()[0] = 5;
+        const int descriptor = shm_open("/segment", O_RDONLY, 0600);
+        world.require(
+            mmap(nullptr, segment_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0) == MAP_FAILED &&
+                errno == EACCES,
+            "no writing through a descriptor for reading");
+        auto* const bytes =
+            static_cast<unsigned char*>(mmap(nullptr, segment_bytes, PROT_READ, MAP_SHARED, descriptor, 0));
+        world.require(bytes[0] == 5, "reading");
+        if (write) bytes[0] = 1;
+      });
+    });
+    EXPECT_EQ(outcome.kind, write ? OutcomeKind::crash : OutcomeKind::passed) << outcome.message;
+  }
+}
+
+// The store is announced, then another task unmaps, then it happens.
+TEST_F(SegmentsTest, a_mapping_that_goes_while_a_store_is_under_way_is_a_crash) {
+  const Outcome outcome = run_randomly(300, [](World& world) {
+    const auto bytes = std::make_shared<std::atomic<unsigned char*>>(nullptr);
+    world.process("a").start("writer", [bytes] {
+      *bytes = open_and_map();
+      *bytes->load() = 1;
+    });
+    world.process("a").start("unmapper", [bytes] {
+      while (bytes->load() == nullptr) sched_yield();
+      munmap(bytes->load(), segment_bytes);
+    });
+  });
+  EXPECT_EQ(outcome.kind, OutcomeKind::crash) << outcome.message;
+}
+
+TEST_F(SegmentsTest, the_rest_of_the_last_page_is_fresh_in_each_execution_too) {
+  const Outcome outcome = run_randomly(3, [](World& world) {
+    world.process("a").start("main", [&world] {
+      unsigned char* const bytes = open_and_map();
+      world.require(bytes[segment_bytes + 50] == 0, "fresh");
+      bytes[segment_bytes + 50] = 7;
+    });
+  });
+  EXPECT_EQ(outcome, Outcome{});
 }
 
 }  // namespace

@@ -252,27 +252,136 @@ TEST_F(SynchronisationTest, atomic_wait_and_notify_work_through_the_futex) {
   EXPECT_EQ(outcome, Outcome{});
 }
 
-TEST_F(SynchronisationTest, a_mutex_in_a_shared_segment_excludes_across_processes) {
-  const Outcome outcome = run_randomly(200, [](World& world) {
-    for (const char* name : {"one", "two"}) {
-      world.process(name).start("main", [&world] {
-        const int descriptor = shm_open("/m", O_CREAT | O_RDWR, 0600);
+/// A mutex in shared memory, initialised by the first process that comes.
+struct SharedMutex {
+  pthread_mutex_t mutex;
+  int inside;
+
+  static SharedMutex* map(bool shared_between_processes) {
+    const int descriptor = shm_open("/m", O_CREAT | O_EXCL | O_RDWR, 0600);
+    const bool first = descriptor >= 0;
+    const int opened = first ? descriptor : shm_open("/m", O_RDWR, 0600);
+    if (ftruncate(opened, 4096) != 0) return nullptr;
+    auto* const shared =
+        static_cast<SharedMutex*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, opened, 0));
+    if (first) {
+      pthread_mutexattr_t attributes;
+      pthread_mutexattr_init(&attributes);
+      pthread_mutexattr_setpshared(
+          &attributes, shared_between_processes ? PTHREAD_PROCESS_SHARED : PTHREAD_PROCESS_PRIVATE);
+      pthread_mutex_init(&shared->mutex, &attributes);
+    }
+    return shared;
+  }
+};
+
+Outcome two_processes_and_a_mutex(bool shared_between_processes,
+                                  Outcome (*run)(unsigned, const std::function<void(World&)>&)) {
+  return run(300, [shared_between_processes](World& world) {
+    world.process("one").start("main", [=, &world] {
+      SharedMutex* const shared = SharedMutex::map(shared_between_processes);
+      sem_t* const ready = sem_open("/ready", O_CREAT, 0600, 0U);
+      sem_post(ready);
+      pthread_mutex_lock(&shared->mutex);
+      world.require(++shared->inside == 1, "alone inside");
+      std::this_thread::sleep_for(1ms);
+      --shared->inside;
+      pthread_mutex_unlock(&shared->mutex);
+    });
+    world.process("two").start("main", [=, &world] {
+      sem_wait(sem_open("/ready", O_CREAT, 0600, 0U));
+      SharedMutex* const shared = SharedMutex::map(shared_between_processes);
+      pthread_mutex_lock(&shared->mutex);
+      world.require(++shared->inside == 1, "alone inside");
+      --shared->inside;
+      pthread_mutex_unlock(&shared->mutex);
+    });
+  });
+}
+
+TEST_F(SynchronisationTest, a_mutex_made_for_it_excludes_across_processes) {
+  EXPECT_EQ(two_processes_and_a_mutex(true, &run_randomly), Outcome{});
+}
+
+TEST_F(SynchronisationTest,
+       a_mutex_not_made_for_it_never_wakes_the_other_process) {  // as with Linux's private futex
+  const Outcome outcome = two_processes_and_a_mutex(false, &run_randomly);
+  EXPECT_EQ(outcome.kind, OutcomeKind::deadlock) << outcome.message;
+}
+
+TEST_F(SynchronisationTest, a_semaphore_not_made_for_it_never_wakes_the_other_process) {
+  for (const int shared : {1, 0}) {
+    const Outcome outcome = run([shared](World& world) {
+      world.process("a").start("main", [shared] {
+        const int descriptor = shm_open("/s", O_CREAT | O_RDWR, 0600);
         ftruncate(descriptor, 4096);
-        struct Shared {
-          pthread_mutex_t mutex;
-          int inside;
-        };
-        auto* const shared =
-            static_cast<Shared*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0));
-        pthread_mutex_lock(&shared->mutex);
-        world.require(++shared->inside == 1, "alone inside");
-        sched_yield();
-        --shared->inside;
-        pthread_mutex_unlock(&shared->mutex);
+        auto* const semaphore =
+            static_cast<sem_t*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0));
+        sem_init(semaphore, shared, 0);
+        sem_wait(semaphore);
+      });
+      world.process("b").start("main", [] {
+        const int descriptor = shm_open("/s", O_RDWR, 0600);
+        sem_post(static_cast<sem_t*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0)));
+      });
+    });
+    EXPECT_EQ(outcome.kind, shared == 1 ? OutcomeKind::passed : OutcomeKind::deadlock) << outcome.message;
+  }
+}
+
+TEST_F(SynchronisationTest, waiting_for_a_condition_without_its_mutex_is_an_assertion) {
+  const Outcome outcome = run([](World& world) {
+    world.process("p").start("main", [] {
+      pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+      pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
+      pthread_cond_wait(&condition, &mutex);
+    });
+  });
+  EXPECT_EQ(outcome.kind, OutcomeKind::assertion) << outcome.message;
+}
+
+TEST_F(SynchronisationTest, call_once_passes_an_exception_on_and_lets_the_next_one_try) {
+  const Outcome outcome = run_randomly(100, [](World& world) {
+    struct Shared {
+      std::once_flag flag;
+      std::atomic<int> tries = 0;
+      std::atomic<int> failures = 0;
+      std::atomic<int> finished = 0;
+    };
+    const auto shared = std::make_shared<Shared>();
+    for (const char* name : {"one", "two"}) {
+      world.process("p").start(name, [shared, &world] {
+        try {
+          std::call_once(shared->flag, [&] {
+            if (++shared->tries == 1) throw 1;
+          });
+        } catch (int) {
+          ++shared->failures;
+        }
+        if (++shared->finished == 2)
+          world.require(shared->tries == 2 && shared->failures == 1, "one try failed");
       });
     }
   });
   EXPECT_EQ(outcome, Outcome{});
+}
+
+TEST_F(SynchronisationTest, a_semaphore_destroyed_between_the_arrival_and_the_post_is_a_crash) {
+  const Outcome outcome = run_randomly(200, [](World& world) {
+    const auto semaphore = std::make_shared<sem_t>();
+    const auto ready = std::make_shared<std::atomic<bool>>(false);
+    world.process("p").start("maker", [=] {
+      sem_init(semaphore.get(), 0, 0);
+      *ready = true;
+      std::this_thread::yield();
+      sem_destroy(semaphore.get());
+    });
+    world.process("p").start("poster", [=] {
+      while (!*ready) std::this_thread::yield();
+      sem_post(semaphore.get());
+    });
+  });
+  EXPECT_EQ(outcome, (Outcome{OutcomeKind::crash, "sem_post on memory that holds no semaphore"}));
 }
 
 }  // namespace
