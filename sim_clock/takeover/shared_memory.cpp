@@ -51,6 +51,20 @@ extern "C" int fstat(int descriptor, struct stat* into) noexcept {
   return current_task->world->segments().status(descriptor, *into);
 }
 
+// The names under which code with -D_FILE_OFFSET_BITS=64 calls the same functions; off_t is 64 bits wide
+// anyway.
+extern "C" int ftruncate64(int descriptor, off64_t bytes) noexcept { return ftruncate(descriptor, bytes); }
+extern "C" void* mmap64(void* address, std::size_t bytes, int protection, int flags, int descriptor,
+                        off64_t offset) noexcept {
+  return mmap(address, bytes, protection, flags, descriptor, offset);
+}
+
+extern "C" int dup(int descriptor) noexcept {
+  if (is_simulated(descriptor))
+    current_task->world->unsupported("dup of a shared memory object's descriptor");
+  return LTSIM_NEXT(dup)(descriptor);
+}
+
 extern "C" int fchmod(int descriptor, mode_t mode) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(fchmod)(descriptor, mode);
   return 0;  // the simulated world has one user

@@ -374,6 +374,25 @@ TEST_F(CallsTest, a_futex_wait_for_a_value_that_has_changed_returns_at_once) {
       Outcome{});
 }
 
+TEST_F(CallsTest, a_futex_wait_with_a_bit_set_has_a_deadline_on_the_clock_it_names) {  // futex(2)
+  EXPECT_EQ(
+      run_task([](World& world) {
+        std::uint32_t word = 0;
+        std::this_thread::sleep_for(50ms);
+        for (const clockid_t clock : {CLOCK_MONOTONIC, CLOCK_REALTIME}) {
+          const int operation = FUTEX_WAIT_BITSET | (clock == CLOCK_REALTIME ? FUTEX_CLOCK_REALTIME : 0);
+          const SimTime begin = world.now();
+          const timespec deadline = in(20ms, clock);
+          world.require(
+              syscall(SYS_futex, &word, operation, 0, &deadline, nullptr, FUTEX_BITSET_MATCH_ANY) == -1 &&
+                  errno == ETIMEDOUT,
+              "nobody wakes");
+          world.require(took(world, begin, 20ms), "at the deadline");
+        }
+      }),
+      Outcome{});
+}
+
 TEST_F(CallsTest, a_counting_semaphore_is_tried_for_the_time_given) {
   EXPECT_EQ(run_task([](World& world) {
               std::counting_semaphore<> semaphore{1};
