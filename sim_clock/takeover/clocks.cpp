@@ -24,6 +24,9 @@ int sleep_for(std::chrono::nanoseconds duration) noexcept {
   return 0;
 }
 
+/// The numbered clocks of <linux/time.h>; dynamic ones (devices, other processes) are not simulated.
+bool is_known(clockid_t clock) noexcept { return clock >= CLOCK_REALTIME && clock <= CLOCK_TAI; }
+
 bool is_valid(const timespec& time) noexcept {
   return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < 1'000'000'000;
 }
@@ -39,6 +42,10 @@ std::chrono::nanoseconds to_duration(const timespec& time) noexcept {
 
 extern "C" int clock_gettime(clockid_t clock, timespec* into) noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(clock_gettime)(clock, into);
+  if (!is_known(clock)) {
+    errno = EINVAL;
+    return -1;
+  }
   *into = current_task->world->read_clock(clock);
   return 0;
 }
@@ -74,7 +81,7 @@ extern "C" int nanosleep(const timespec* duration, timespec* remaining) {
 
 extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* remaining) {
   if (current_task == nullptr) return LTSIM_NEXT(clock_nanosleep)(clock, flags, time, remaining);
-  if (!is_valid(*time)) return EINVAL;
+  if (!is_valid(*time) || !is_known(clock)) return EINVAL;
   if ((flags & TIMER_ABSTIME) == 0) return sleep_for(to_duration(*time));
   ltsim::World& world = *current_task->world;
   world.sleep_until(world.to_sim_time(clock, *time));

@@ -61,9 +61,10 @@ extern "C" void __assert_fail(const char* expression, const char* file, unsigned
   __builtin_unreachable();
 }
 
-// exit(3) and its kind would end the simulator and every result with it.
-#define LTSIM_EXIT(name)                                                                           \
-  extern "C" void name(int status) noexcept {                                                      \
+// exit(3) and its kind would end the simulator and every result with it. The second argument is the exception
+// specification of libc's declaration.
+#define LTSIM_EXIT(name, specification)                                                            \
+  extern "C" void name(int status) specification {                                                 \
     if (current_task == nullptr) {                                                                 \
       LTSIM_NEXT(name)(status);                                                                    \
     } else {                                                                                       \
@@ -72,7 +73,7 @@ extern "C" void __assert_fail(const char* expression, const char* file, unsigned
     __builtin_unreachable();                                                                       \
   }
 
-LTSIM_EXIT(exit)
-LTSIM_EXIT(_exit)
-LTSIM_EXIT(_Exit)
-LTSIM_EXIT(quick_exit)
+LTSIM_EXIT(exit, noexcept)
+LTSIM_EXIT(_exit, )
+LTSIM_EXIT(_Exit, noexcept)
+LTSIM_EXIT(quick_exit, noexcept)

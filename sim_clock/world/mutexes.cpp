@@ -142,6 +142,7 @@ int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
 
 void Mutexes::release(State& state, const void* address) noexcept {
   state.owner_plus_one = 0;
+  state.locked_count = 0;
   world_.scheduler().wake(mutex_key(address, state.kind), 1);
 }
 
@@ -158,13 +159,15 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   State& state = resolve(mutex);
   world_.scheduler().point(operation_on(kind, state.object));
   if (const int error = check_owner(state); error != 0) return error;
-  const std::uint32_t locked_count = state.locked_count;
-  release(state, mutex);
+  // Like glibc, one unlock: a recursive mutex that was locked twice stays locked while its owner waits.
+  if (--state.locked_count == 0) release(state, mutex);
   const auto wake = world_.scheduler().block(condition_key(condition), deadline);
-  while (state.owner_plus_one != 0)
+  const std::uint32_t self = current_task->id + 1U;
+  while (state.owner_plus_one != 0 && state.owner_plus_one != self) {
     world_.scheduler().block(mutex_key(mutex, state.kind), VirtualClock::never);
-  state.owner_plus_one = current_task->id + 1U;
-  state.locked_count = locked_count;
+  }
+  state.owner_plus_one = self;
+  ++state.locked_count;
   return wake == Scheduler::Wake::timed_out ? ETIMEDOUT : 0;
 }
 

@@ -108,7 +108,8 @@ timespec World::read_clock(clockid_t clock) noexcept {
   scheduler_.clock_was_read();
   scheduler_.point({.kind = OperationKind::clock_read});
   SimTime time = now();
-  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) time += wall_clock_epoch;
+  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI)
+    time += wall_clock_epoch;
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
 }

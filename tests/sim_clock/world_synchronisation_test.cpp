@@ -340,6 +340,30 @@ TEST_F(SynchronisationTest, waiting_for_a_condition_without_its_mutex_is_an_asse
   EXPECT_EQ(outcome.kind, OutcomeKind::assertion) << outcome.message;
 }
 
+TEST_F(SynchronisationTest,
+       a_recursive_mutex_locked_twice_stays_locked_while_its_owner_waits) {  // as with glibc
+  for (const int locks : {1, 2}) {
+    const Outcome outcome = run([locks](World& world) {
+      struct Shared {
+        std::recursive_mutex mutex;
+        pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
+      };
+      const auto shared = std::make_shared<Shared>();
+      world.process("p").start("waiter", [=] {
+        for (int i = 0; i < locks; ++i) shared->mutex.lock();
+        pthread_cond_wait(&shared->condition, shared->mutex.native_handle());
+        for (int i = 0; i < locks; ++i) shared->mutex.unlock();
+      });
+      world.process("p").start("notifier", [=] {
+        shared->mutex.lock();
+        pthread_cond_signal(&shared->condition);
+        shared->mutex.unlock();
+      });
+    });
+    EXPECT_EQ(outcome.kind, locks == 1 ? OutcomeKind::passed : OutcomeKind::deadlock) << outcome.message;
+  }
+}
+
 TEST_F(SynchronisationTest, call_once_passes_an_exception_on_and_lets_the_next_one_try) {
   const Outcome outcome = run_randomly(100, [](World& world) {
     struct Shared {
