@@ -14,12 +14,8 @@ std::string_view to_string(OutcomeKind kind) noexcept {
       return "deadlock";
     case OutcomeKind::livelock:
       return "livelock";
-    case OutcomeKind::data_race:
-      return "data-race";
     case OutcomeKind::crash:
       return "crash";
-    case OutcomeKind::leak:
-      return "leak";
     case OutcomeKind::unsupported:
       return "unsupported";
   }

@@ -9,13 +9,11 @@ namespace ltsim {
 
 enum class OutcomeKind : std::uint8_t {
   passed,
-  invariant,  ///< a property of the scenario does not hold
-  assertion,  ///< the code under test contradicted itself: assert, abort
-  deadlock,   ///< no task can run and no timer is armed
-  livelock,   ///< more scheduling points than the scenario allows
-  data_race,
+  invariant,    ///< a property of the scenario does not hold
+  assertion,    ///< the code under test contradicted itself: assert, abort
+  deadlock,     ///< no task can run and no timer is armed
+  livelock,     ///< more scheduling points than the scenario allows
   crash,        ///< an exception nobody caught, a signal
-  leak,         ///< a lock held or an object left behind at the end
   unsupported,  ///< a call that the world does not simulate: our limit, not a finding
 };
 

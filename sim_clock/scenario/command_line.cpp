@@ -93,6 +93,15 @@ int list() {
   return exit_nothing_found;
 }
 
+/// Ready to be pasted: in quotes if a shell would read it otherwise.
+std::string as_shell_word(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:,=@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
+  return quoted + "'";
+}
+
 /// "1000 executions and 2 s"
 std::string describe_limits(const ExploreArguments& arguments) {
   const bool counted = arguments.options.executions_max != unlimited;
@@ -123,7 +132,8 @@ int explore(const ExploreArguments& arguments, std::string_view program) {
       fmt::print("{}", describe(failure, strategy.name()));
       // The failure counts, and has been told, also where its file cannot be written.
       if (write_file(paths.back(), to_string(failure.schedule))) {
-        fmt::print("  replay:  {} replay {}\n", program, paths.back());
+        fmt::print("  replay:  {} replay {}\n", as_shell_word(std::string{program}),
+                   as_shell_word(paths.back()));
       } else {
         fmt::print("  {}: cannot be written; the lines above are what it would hold\n", paths.back());
       }

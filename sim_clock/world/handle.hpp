@@ -1,4 +1,4 @@
-// How an object that the code under test holds in its own memory (a sem_t, a pthread_mutex_t) leads to our
+// How an object that the code under test holds in its own memory (a sem_t) leads to our
 // state of it.
 //
 // The first bytes of a sem_t hold the number of the world's execution and the object's index. A handle of an

@@ -36,7 +36,6 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   decisions_ = 0;
   blocked_ever_ = 0;
   hash_ = 0;
-  time_is_a_choice_ = true;
   clock_was_read_ = false;
   has_run_ = false;
   outcome_.kind = OutcomeKind::passed;
@@ -145,7 +144,7 @@ void Scheduler::point(Operation operation) noexcept {
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, operation);
   if (clock_.next_deadline() <= clock_.now()) wake_due();
-  if (time_is_a_choice_ && (clock_.any_armed() || clock_was_read_)) choose_slow_moment();
+  if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
   if (runnable_count_ > 1) {
     // Who yields wants somebody else to run: the default is then the next task, and this one comes last.
     const auto from = static_cast<TaskId>(self.id + (operation.kind == OperationKind::yield ? 1 : 0));

@@ -7,7 +7,8 @@
 // Invariants
 //   I1  exactly one task of a running world runs; it is runnable.
 //   I2  a task that is not runnable is blocked on one key, with at most one timer; or stalled, with one
-//   timer; or finished. I3  two executions whose strategies choose alike have equal trace hashes.
+//       timer; or finished.
+//   I3  two executions whose strategies choose alike have equal trace hashes.
 #pragma once
 
 #include <array>
@@ -45,8 +46,6 @@ class Scheduler {
   /// @param name  unique within the process
   Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
   void set_points_max(std::uint64_t points) noexcept { points_max_ = points; }
-  /// Whether the strategy may let time pass although somebody could run (default yes).
-  void set_time_is_a_choice(bool yes) noexcept { time_is_a_choice_ = yes; }
   /// Called, outside the simulated world, each time that every task waits of its own accord, before time
   /// moves on.
   void add_idle_check(std::function<void()> check) { idle_checks_.push_back(std::move(check)); }
@@ -131,7 +130,6 @@ class Scheduler {
   std::uint64_t decisions_ = 0;
   std::uint64_t blocked_ever_ = 0;
   std::uint64_t hash_ = 0;
-  bool time_is_a_choice_ = true;
   bool clock_was_read_ = false;
   bool has_run_ = false;
   Outcome outcome_;

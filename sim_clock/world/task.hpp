@@ -18,8 +18,8 @@ class World;
 
 using ProcessId = std::uint8_t;
 
-/// What a blocked task waits for: the canonical address of a semaphore, mutex, condition or futex word, or a
-/// task to join.
+/// What a blocked task waits for: a mutex, condition or futex word by its address, a semaphore by its number, a task to
+/// join by its number. The highest bits tell the kinds apart.
 using WaitKey = std::uint64_t;
 
 struct Task {

@@ -94,9 +94,6 @@ class World {
   /// moves on. It may call violated().
   void whenever_idle(std::function<void()> check) { scheduler_.add_idle_check(std::move(check)); }
 
-  /// Whether the strategy may let time pass although somebody could run: slow processors. Default yes.
-  void set_time_is_a_choice(bool yes) noexcept { scheduler_.set_time_is_a_choice(yes); }
-
   /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
   void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
 

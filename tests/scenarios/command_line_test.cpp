@@ -66,6 +66,21 @@ TEST_F(CommandLineTest, the_replay_line_of_a_failure_is_the_last_and_runs_as_it_
   EXPECT_EQ(again.output, replayed.output);
 }
 
+TEST_F(CommandLineTest, a_replay_line_with_an_awkward_path_can_be_pasted_too) {
+  const Result found = ltsim("explore paper/time-out --out \"my 'own' results\"");
+  const std::string line = found.output.substr(found.output.rfind("  replay:  ") + 11);
+  EXPECT_EQ(shell(line.substr(0, line.find('\n'))).exit_code, 1) << line;
+}
+
+TEST_F(CommandLineTest, a_replay_that_ends_otherwise_than_recorded_says_so) {
+  write("fixed.schedule",
+        "ltsim schedule 1\nscenario paper/one-request\nmemory sc\noutcome invariant: I1: gone\n");
+  const Result replayed = ltsim("replay fixed.schedule");
+  EXPECT_EQ(replayed.exit_code, 0);
+  EXPECT_NE(replayed.output.find("not as recorded: invariant: I1: gone"), std::string::npos)
+      << replayed.output;
+}
+
 TEST_F(CommandLineTest, the_json_report_has_the_published_fields) {
   EXPECT_EQ(ltsim("explore paper/time-out --seed 7 --json report.json").exit_code, 1);
   const auto report = nlohmann::json::parse(read("report.json"));

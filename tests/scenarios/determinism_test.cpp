@@ -1,7 +1,6 @@
 // Same build, same seed: the same trace, every time, in every process; and what failed once, fails again from
 // its schedule.
 
-#include <cctype>
 #include <cstdlib>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/explore/random_strategy.hpp"
+#include "tests/scenarios/scenario_name.hpp"
 #include "tests/support/shell.hpp"
 
 namespace {
@@ -59,12 +59,7 @@ TEST_P(DeterminismTest, two_hundred_seeds_give_the_same_traces_in_two_processes)
 INSTANTIATE_TEST_SUITE_P(Scenarios, DeterminismTest,
                          testing::Values("paper/time-out", "paper/late-emulator", "paper/three-requests",
                                          "nc/part-program"),
-                         [](const testing::TestParamInfo<const char*>& tested) {
-                           std::string name = tested.param;
-                           for (char& c : name)
-                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-                           return name;
-                         });
+                         &scenarios::test_name);
 
 TEST(Replay, reproduces_one_hundred_recorded_failures_out_of_one_hundred) {
   const ltsim::SignalGuard signals;

@@ -7,6 +7,7 @@
 
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/explore/random_strategy.hpp"
+#include "tests/scenarios/scenario_name.hpp"
 
 namespace {
 
@@ -68,12 +69,7 @@ TEST_P(SoundScenarioTest, is_never_accused) {
 
 INSTANTIATE_TEST_SUITE_P(Envelope, SoundScenarioTest,
                          testing::Values("paper/one-request", "paper/three-requests", "nc/part-program"),
-                         [](const testing::TestParamInfo<const char*>& tested) {
-                           std::string name = tested.param;
-                           for (char& c : name)
-                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-                           return name;
-                         });
+                         &scenarios::test_name);
 
 TEST(PartProgram, runs_to_its_end_when_nobody_is_held_up) {
   const ltsim::Schedule nothing_special{
