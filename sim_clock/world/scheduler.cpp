@@ -267,6 +267,15 @@ std::size_t Scheduler::ask(ChoiceKind kind, std::span<const std::uint64_t> optio
 
 std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
   std::size_t count = 0;
+  if (runnable_count_ == 2 && tasks_count_ <= 64) {
+    // The most common case, without loops that end differently each time.
+    const std::uint64_t low = static_cast<std::uint64_t>(std::countr_zero(runnable_[0]));
+    const std::uint64_t high = 63 - static_cast<std::uint64_t>(std::countl_zero(runnable_[0]));
+    const bool low_is_first = low >= from || high < from;
+    options_[0] = low_is_first ? low : high;
+    options_[1] = low_is_first ? high : low;
+    return std::span{options_}.first(2);
+  }
   const auto append = [&](std::size_t word, std::uint64_t mask) {
     for (std::uint64_t bits = runnable_[word] & mask; bits != 0; bits &= bits - 1) {
       options_[count++] = word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));
