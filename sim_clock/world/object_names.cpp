@@ -16,11 +16,16 @@ void ObjectNames::reset() noexcept {
   regions_count_ = 0;
 }
 
+// The next execution of a scenario mostly gives the same names in the same order: what lies in the pool is then right already.
+
 ObjectId ObjectNames::add(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   if (names_count_ == names_.size()) names_.emplace_back();
-  names_[names_count_].assign(name);
-  make_one_word(names_[names_count_]);
+  std::string& stored = names_[names_count_];
+  if (stored != name) {
+    stored.assign(name);
+    make_one_word(stored);
+  }
   return static_cast<ObjectId>(++names_count_);
 }
 
@@ -28,11 +33,13 @@ void ObjectNames::name_region(std::string_view object_name, std::uint32_t offset
                               std::string_view region) {
   if (regions_count_ == regions_.size()) regions_.emplace_back();
   Region& entry = regions_[regions_count_++];
-  entry.object_name.assign(object_name);
   entry.offset = offset;
   entry.bytes = bytes;
-  entry.name.assign(region);
-  make_one_word(entry.name);
+  if (entry.object_name != object_name) entry.object_name.assign(object_name);
+  if (entry.name != region) {
+    entry.name.assign(region);
+    make_one_word(entry.name);
+  }
 }
 
 std::string ObjectNames::name(const Operation& operation) const {
