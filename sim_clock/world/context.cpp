@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/thread_pointer.hpp"
 
 namespace ltsim {
 namespace {
@@ -29,12 +30,6 @@ inline void set_thread_pointer(void* value) noexcept {
                  : "D"(static_cast<long>(ARCH_SET_FS)), "S"(value)
                  : "rcx", "r11", "memory");
   }
-}
-
-inline void* current_thread_pointer() noexcept {
-  void* value = nullptr;
-  asm volatile("mov %%fs:0, %0" : "=r"(value));  // the x86-64 ABI keeps the pointer to itself there
-  return value;
 }
 
 }  // namespace

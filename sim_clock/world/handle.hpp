@@ -1,7 +1,6 @@
-// How an object that the code under test holds in its own memory (a sem_t) leads to our
-// state of it.
+// How a sem_t in the memory of the code under test leads to our state of it.
 //
-// The first bytes of a sem_t hold the number of the world's execution and the object's index. A handle of an
+// Its first bytes hold the number of the world's execution and the object's index. A handle of an
 // earlier execution, which a global may have kept, is recognised by its number.
 #pragma once
 

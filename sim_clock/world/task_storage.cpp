@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/thread_pointer.hpp"
 
 // Exported by glibc for its own parts (GLIBC_PRIVATE) and used by debuggers and sanitizers too: the
 // allocation of a new thread's static TLS block, and the first use of <ctype.h> in a new thread.
@@ -32,12 +33,6 @@ struct ThreadLocals {
   std::size_t total_bytes;
 };
 
-char* current_thread_pointer() noexcept {
-  char* value = nullptr;
-  asm volatile("mov %%fs:0, %0" : "=r"(value));
-  return value;
-}
-
 bool belongs_to_libc(std::string_view path) noexcept {
   const std::string_view file = path.substr(path.find_last_of('/') + 1);
   return file.starts_with("libc.so") || file.starts_with("libc-") || file.starts_with("ld-linux");
@@ -49,7 +44,8 @@ int collect(dl_phdr_info* module, std::size_t /*size*/, void* into) {
     const auto& header = module->dlpi_phdr[i];
     if (header.p_type != PT_TLS) continue;
     static_cast<std::vector<ThreadLocals>*>(into)->push_back(
-        {.from_thread_pointer = static_cast<char*>(module->dlpi_tls_data) - current_thread_pointer(),
+        {.from_thread_pointer =
+             static_cast<char*>(module->dlpi_tls_data) - static_cast<char*>(current_thread_pointer()),
          .image = reinterpret_cast<const void*>(module->dlpi_addr + header.p_vaddr),
          .image_bytes = header.p_filesz,
          .total_bytes = header.p_memsz});
@@ -93,7 +89,7 @@ TaskStorage::TaskStorage() {
   thread_pointer_ = _dl_allocate_tls(nullptr);
   LTSIM_CHECK(thread_pointer_ != nullptr);
   char* const block = static_cast<char*>(thread_pointer_);
-  const char* const own = current_thread_pointer();
+  const char* const own = static_cast<const char*>(current_thread_pointer());
   std::memcpy(block + self_tcb, &thread_pointer_, sizeof thread_pointer_);
   std::memcpy(block + self_thread, &thread_pointer_, sizeof thread_pointer_);
   std::memcpy(block + stack_guard, own + stack_guard, sizeof(std::uintptr_t));
@@ -114,7 +110,8 @@ void TaskStorage::reset() noexcept {
     std::memcpy(at, module.image, module.image_bytes);
     std::memset(at + module.image_bytes, 0, module.total_bytes - module.image_bytes);
   }
-  const std::ptrdiff_t errno_from_thread_pointer = reinterpret_cast<char*>(&errno) - current_thread_pointer();
+  const std::ptrdiff_t errno_from_thread_pointer =
+      reinterpret_cast<char*>(&errno) - static_cast<char*>(current_thread_pointer());
   std::memset(static_cast<char*>(thread_pointer_) + errno_from_thread_pointer, 0, sizeof errno);
 }
 
