@@ -14,6 +14,10 @@ std::string_view to_string(OutcomeKind kind) noexcept {
       return "deadlock";
     case OutcomeKind::livelock:
       return "livelock";
+    case OutcomeKind::data_race:
+      return "data-race";
+    case OutcomeKind::leak:
+      return "leak";
     case OutcomeKind::crash:
       return "crash";
     case OutcomeKind::unsupported:

@@ -13,6 +13,8 @@ enum class OutcomeKind : std::uint8_t {
   assertion,    ///< the code under test contradicted itself: assert, abort
   deadlock,     ///< no task can run and no timer is armed
   livelock,     ///< more scheduling points than the scenario allows
+  data_race,    ///< two accesses to shared memory, one of them a plain one, that nothing orders
+  leak,         ///< a lock is held at the end
   crash,        ///< an exception nobody caught, a signal
   unsupported,  ///< a call that the world does not simulate: our limit, not a finding
 };

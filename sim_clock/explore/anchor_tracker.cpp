@@ -19,8 +19,8 @@ void AnchorTracker::performs(const Task& task, const Operation& operation) noexc
 }
 
 void AnchorTracker::blocks(const Task& task) noexcept {
-  stand_at(fmt::format("{} in {} {}", task.name, to_string(task.pending.kind),
-                       world_.objects().name(task.pending)));
+  stand_at(fmt::format("{} in {} {}", task.name, to_string(world_.scheduler().pending(task).kind),
+                       world_.objects().name(world_.scheduler().pending(task))));
   if (next_ != nullptr) next_->blocks(task);
 }
 

@@ -16,12 +16,15 @@ class RandomStrategy final : public Strategy {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "random"; }
   void begin_execution(std::uint64_t seed) noexcept override;
-  [[nodiscard]] std::size_t choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept override;
-  [[nodiscard]] SlowMoment slow_moment(SimTime until_next_timer) noexcept override;
+  [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
+  [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
 
  private:
   RandomGenerator generator_{0};
   unsigned slow_moment_bits_ = 1;  // a slow moment has the probability 2^-bits
+  unsigned fault_bits_ = 1;        // and a fault, wherever one is possible
 };
 
 }  // namespace ltsim

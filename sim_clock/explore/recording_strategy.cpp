@@ -4,23 +4,41 @@
 
 namespace ltsim {
 
-std::size_t RecordingStrategy::choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept {
-  const std::size_t chosen = chooser_.choose(kind, options);
+std::size_t RecordingStrategy::choose_task(const TaskChoice& choice) noexcept {
+  const std::size_t chosen = chooser_.choose_task(choice);
   if (chosen == 0) return chosen;
   Deviation deviation;
   deviation.anchor = anchors_.anchor();
-  if (kind == ChoiceKind::task) {
-    deviation.to_task = world_.scheduler().task(static_cast<TaskId>(options[chosen])).name;
-  } else {
-    deviation.kind = Deviation::Kind::choose;
-    deviation.answer = chosen;
-  }
+  deviation.to_task = world_.scheduler().task(static_cast<TaskId>(choice.options[chosen])).name;
   deviations_.push_back(std::move(deviation));
   return chosen;
 }
 
-SlowMoment RecordingStrategy::slow_moment(SimTime until_next_timer) noexcept {
-  const SlowMoment moment = chooser_.slow_moment(until_next_timer);
+std::size_t RecordingStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {
+  const std::size_t variant = chooser_.strike(kind, variants_count);
+  if (variant == 0) return variant;
+  Deviation deviation;
+  deviation.kind = Deviation::Kind::fault;
+  deviation.anchor = anchors_.anchor();
+  deviation.fault = kind;
+  deviation.answer = variant;
+  deviations_.push_back(std::move(deviation));
+  return variant;
+}
+
+std::size_t RecordingStrategy::answer(std::size_t count) noexcept {
+  const std::size_t answered = chooser_.answer(count);
+  if (answered == 0) return answered;
+  Deviation deviation;
+  deviation.kind = Deviation::Kind::choose;
+  deviation.anchor = anchors_.anchor();
+  deviation.answer = answered;
+  deviations_.push_back(std::move(deviation));
+  return answered;
+}
+
+SlowMoment RecordingStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
+  const SlowMoment moment = chooser_.slow_moment(choice);
   if (moment.duration != SimTime{0}) {
     Deviation deviation;
     deviation.kind = moment.others_go_on ? Deviation::Kind::stall : Deviation::Kind::pass_time;

@@ -17,8 +17,14 @@ class RecordingStrategy final : public Strategy {
 
   [[nodiscard]] std::string_view name() const noexcept override { return chooser_.name(); }
   void begin_execution(std::uint64_t seed) noexcept override { chooser_.begin_execution(seed); }
-  [[nodiscard]] std::size_t choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept override;
-  [[nodiscard]] SlowMoment slow_moment(SimTime until_next_timer) noexcept override;
+  [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
+  [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
+  void performs(TaskId task, const Operation& operation) noexcept override {
+    chooser_.performs(task, operation);
+  }
 
   [[nodiscard]] const std::vector<Deviation>& deviations() const noexcept { return deviations_; }
 

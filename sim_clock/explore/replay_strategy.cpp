@@ -20,23 +20,33 @@ void ReplayStrategy::begin_execution(std::uint64_t /*seed*/) noexcept {
   for (Entry& entry : entries_) entry = Entry{.deviation = entry.deviation};
 }
 
-std::size_t ReplayStrategy::choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept {
-  Entry* const entry =
-      entry_here(kind == ChoiceKind::task ? Deviation::Kind::switch_task : Deviation::Kind::choose);
+std::size_t ReplayStrategy::choose_task(const TaskChoice& choice) noexcept {
+  Entry* const entry = entry_here(Deviation::Kind::switch_task);
   if (entry == nullptr) return 0;
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    const bool meant =
-        kind == ChoiceKind::task
-            ? world_.scheduler().task(static_cast<TaskId>(options[i])).name == entry->deviation->to_task
-            : i == entry->deviation->answer;
-    if (!meant) continue;
+  for (std::size_t i = 0; i < choice.options.size(); ++i) {
+    if (world_.scheduler().task(static_cast<TaskId>(choice.options[i])).name != entry->deviation->to_task)
+      continue;
     entry->carried_out = true;
     return i;
   }
   return 0;
 }
 
-SlowMoment ReplayStrategy::slow_moment(SimTime /*until_next_timer*/) noexcept {
+std::size_t ReplayStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {
+  Entry* const entry = entry_here(Deviation::Kind::fault, kind);
+  if (entry == nullptr || entry->deviation->answer > variants_count) return 0;
+  entry->carried_out = true;
+  return entry->deviation->answer;
+}
+
+std::size_t ReplayStrategy::answer(std::size_t count) noexcept {
+  Entry* const entry = entry_here(Deviation::Kind::choose);
+  if (entry == nullptr || entry->deviation->answer >= count) return 0;
+  entry->carried_out = true;
+  return entry->deviation->answer;
+}
+
+SlowMoment ReplayStrategy::slow_moment(const SlowMomentChoice& /*choice*/) noexcept {
   for (const auto kind : {Deviation::Kind::pass_time, Deviation::Kind::stall}) {
     Entry* const entry = entry_here(kind);
     if (entry == nullptr) continue;
@@ -49,21 +59,23 @@ SlowMoment ReplayStrategy::slow_moment(SimTime /*until_next_timer*/) noexcept {
 std::optional<ReplayStrategy::Divergence> ReplayStrategy::divergence() const {
   for (const Entry& entry : entries_) {
     if (entry.carried_out) continue;
-    const std::string_view reason = !entry.reached ? "the execution never came to this place"
-                                    : entry.deviation->kind == Deviation::Kind::switch_task
-                                        ? "the task cannot run there"
-                                        : "there is no such answer";
+    const std::string_view reason =
+        !entry.reached                                          ? "the execution never came to this place"
+        : entry.deviation->kind == Deviation::Kind::switch_task ? "the task cannot run there"
+        : entry.deviation->kind == Deviation::Kind::fault       ? "the fault cannot strike there so"
+                                                                : "there is no such answer";
     return Divergence{.deviation = entry.deviation, .reason = std::string{reason}};
   }
   return std::nullopt;
 }
 
-ReplayStrategy::Entry* ReplayStrategy::entry_here(Deviation::Kind kind) noexcept {
+ReplayStrategy::Entry* ReplayStrategy::entry_here(Deviation::Kind kind, FaultKind fault) noexcept {
   const auto found = entries_at_.find(anchors_.anchor());
   if (found == entries_at_.end()) return nullptr;
   for (const std::size_t index : found->second) {
     Entry& entry = entries_[index];
     if (entry.deviation->kind != kind || entry.reached) continue;
+    if (kind == Deviation::Kind::fault && entry.deviation->fault != fault) continue;
     entry.reached = true;
     return &entry;
   }

@@ -23,8 +23,10 @@ class ReplayStrategy final : public Strategy {
   [[nodiscard]] std::string_view name() const noexcept override { return "replay"; }
   /// The seed does not matter.
   void begin_execution(std::uint64_t seed) noexcept override;
-  [[nodiscard]] std::size_t choose(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept override;
-  [[nodiscard]] SlowMoment slow_moment(SimTime until_next_timer) noexcept override;
+  [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
+  [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
 
   struct Divergence {
     const Deviation* deviation;
@@ -40,7 +42,8 @@ class ReplayStrategy final : public Strategy {
     bool carried_out = false;
   };
 
-  [[nodiscard]] Entry* entry_here(Deviation::Kind kind) noexcept;
+  /// @param fault  which one, if the kind is `fault`
+  [[nodiscard]] Entry* entry_here(Deviation::Kind kind, FaultKind fault = FaultKind::crash) noexcept;
 
   const World& world_;
   const AnchorTracker& anchors_;

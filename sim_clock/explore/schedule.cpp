@@ -62,6 +62,20 @@ std::optional<OutcomeKind> parse_outcome_kind(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<FaultKind> parse_fault_kind(std::string_view text) {
+  for (std::size_t i = 0; i < fault_kinds_count; ++i) {
+    if (to_string(static_cast<FaultKind>(i)) == text) return static_cast<FaultKind>(i);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> parse_number(std::string_view text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
 tl::expected<Deviation, std::string> parse_deviation(const std::vector<std::string_view>& words) {
   const std::string_view kind = words.front();
   Deviation deviation;
@@ -80,13 +94,22 @@ tl::expected<Deviation, std::string> parse_deviation(const std::vector<std::stri
       return tl::unexpected<std::string>(
           "a time or stall line ends with a duration such as +20ms (ns, us, ms or s)");
     deviation.passes = *passes;
+  } else if (kind == "fault") {
+    deviation.kind = Deviation::Kind::fault;
+    anchor_end = words.size() < 3 ? 0 : words.size() - 2;
+    const auto fault = anchor_end == 0 ? std::nullopt : parse_fault_kind(words[anchor_end]);
+    const auto variant = parse_number(words.back());
+    if (!fault || !variant || *variant == 0) {
+      return tl::unexpected<std::string>(
+          "a fault line ends with the kind of fault and the number, from 1, of the way in which it strikes");
+    }
+    deviation.fault = *fault;
+    deviation.answer = *variant;
   } else {
     deviation.kind = Deviation::Kind::choose;
-    const std::string_view answer = words.back();
-    const auto [end, error] = std::from_chars(answer.data(), answer.data() + answer.size(), deviation.answer);
-    if (error != std::errc{} || end != answer.data() + answer.size()) {
-      return tl::unexpected<std::string>("a choose line ends with the number that was answered");
-    }
+    const auto answer = parse_number(words.back());
+    if (!answer) return tl::unexpected<std::string>("a choose line ends with the number that was answered");
+    deviation.answer = *answer;
   }
   if (!is_anchor(words, 1, anchor_end)) {
     return tl::unexpected<std::string>(
@@ -111,6 +134,8 @@ std::string to_string(const Deviation& deviation) {
       return fmt::format("time      {} +{}", place, to_text(deviation.passes));
     case Deviation::Kind::stall:
       return fmt::format("stall     {} +{}", place, to_text(deviation.passes));
+    case Deviation::Kind::fault:
+      return fmt::format("fault     {} {} {}", place, to_string(deviation.fault), deviation.answer);
     case Deviation::Kind::choose:
       return fmt::format("choose    {} {}", place, deviation.answer);
   }
@@ -166,7 +191,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
                              ? ""
                              : rest.substr(std::min(rest.find_first_not_of(' ', colon + 1), rest.size()));
     } else if (words.front() == "switch" || words.front() == "time" || words.front() == "stall" ||
-               words.front() == "choose") {
+               words.front() == "fault" || words.front() == "choose") {
       auto deviation = parse_deviation(words);
       if (!deviation) return error(std::move(deviation.error()));
       deviation->line = number;
@@ -174,7 +199,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     } else {
       return error(
           fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, outcome, switch, "
-                      "time, stall, choose",
+                      "time, stall, fault, choose",
                       words.front()));
     }
   }

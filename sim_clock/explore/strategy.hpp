@@ -1,8 +1,11 @@
 // A strategy makes the choices of an execution; strategies differ in nothing else.
 //
 // Every nondeterminism of a world is a choice on one stream: which task runs, how much time passes although
-// somebody could run, what a scenario asks for. Each has a default (the first option; no time passes), so
-// that a schedule can be told as the few choices that deviate from it.
+// somebody could run, whether a fault strikes, what a scenario asks for. Each has a default (the first task;
+// no time passes; no fault; 0), so that a schedule can be told as the few choices that deviate from it.
+//
+// The choices of an execution follow from its seed and from what the strategy has learned in the executions
+// before it (learn()), and from nothing else: two explorations with equal seeds make equal choices.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +14,19 @@
 #include <string_view>
 
 #include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/fault_kind.hpp"
+#include "sim_clock/world/operation.hpp"
 
 namespace ltsim {
 
-enum class ChoiceKind : std::uint8_t {
-  task,      ///< which task runs next; options are task numbers, the default first
-  scenario,  ///< World::choose(); options are 0, 1, 2 ...
+/// Which task runs next.
+struct TaskChoice {
+  std::span<const std::uint64_t> options;  ///< at least two task numbers, the default first
+  TaskId running = 0;                      ///< the task that ran up to here; it need not be among the options
+  /// The running task waits for others: it yields, or polls and finds the same again and again. A strategy
+  /// that goes on with it for long will never see what it waits for.
+  bool running_gives_way = false;
+  std::span<const Operation> pending;  ///< by task number: what each will do next
 };
 
 /// Time that passes although somebody could run.
@@ -26,25 +36,55 @@ struct SlowMoment {
       false;  ///< only the task at whose step it happens gets no processor; otherwise none does
 };
 
+/// What there is to know where time may pass.
+struct SlowMomentChoice {
+  SimTime until_next_timer = VirtualClock::never;  ///< >= 0; `never` when no timer is armed
+  TaskId running = 0;
+};
+
+/// What an execution was like, for strategies that learn.
+struct ExecutionSummary {
+  std::uint64_t points = 0;      ///< scheduling points passed
+  std::uint64_t new_states = 0;  ///< abstract states and reads-from pairs that no execution before it showed
+  bool failed_anew = false;      ///< in a way that no execution before it did
+};
+
 class Strategy {
  public:
   virtual ~Strategy() = default;
 
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
 
-  /// Called before the first choice of an execution. All choices follow from `seed`, and from nothing else.
+  /// Called before the first choice of an execution. Without learn() in between, the same seed means the same
+  /// choices.
   virtual void begin_execution(std::uint64_t seed) noexcept = 0;
 
-  /// @param options  at least two; options[0] is what happens by default
-  /// @return         index into options
-  [[nodiscard]] virtual std::size_t choose(ChoiceKind kind,
-                                           std::span<const std::uint64_t> options) noexcept = 0;
+  /// The execution begun last has ended and counts. Not called for one that is run again to write it down.
+  virtual void learn(const ExecutionSummary& /*summary*/) noexcept {}
+
+  /// @return  index into choice.options
+  [[nodiscard]] virtual std::size_t choose_task(const TaskChoice& choice) noexcept = 0;
 
   /// Whether the task that is about to take a step is held up first: its processor, or the whole machine, is
   /// slow. So a time-out may fire whose peer is merely late. Only asked while time matters to somebody.
-  /// @param until_next_timer  >= 0; VirtualClock::never when no timer is armed
-  /// @return                  the default is no slow moment
-  [[nodiscard]] virtual SlowMoment slow_moment(SimTime until_next_timer) noexcept = 0;
+  /// @return  the default is no slow moment
+  [[nodiscard]] virtual SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept = 0;
+
+  /// Whether a fault that the scenario has granted strikes here. Not asked for a kind that is not granted or
+  /// used up.
+  /// @param variants_count  >= 1: in how many ways this kind can strike here
+  /// @return                0: it does not; otherwise 1 to variants_count
+  [[nodiscard]] virtual std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept = 0;
+
+  /// A question of the scenario, World::choose().
+  /// @param count  >= 2
+  /// @return       0 to count - 1
+  [[nodiscard]] virtual std::size_t answer(std::size_t count) noexcept = 0;
+
+  /// Whether the strategy wants to be told each step by performs(). Asked once an execution.
+  [[nodiscard]] virtual bool follows_steps() const noexcept { return false; }
+  /// `task` goes on and performs `operation`, whether or not there was a choice.
+  virtual void performs(TaskId /*task*/, const Operation& /*operation*/) noexcept {}
 
  protected:
   Strategy() = default;

@@ -20,9 +20,18 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind) 
   if (Segments::contains(address)) {
     self->world->segments().access(address, bytes, kind);
   } else {
-    self->world->scheduler().point({.kind = kind, .bytes = static_cast<std::uint8_t>(bytes)});
+    self->world->scheduler().point(
+        {.kind = kind,
+         .bytes = static_cast<std::uint8_t>(bytes),
+         .offset = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address))});
   }
   return true;
+}
+
+/// A task whose exchange fails again and again waits for others.
+int updated(bool success) noexcept {
+  if (ltsim::current_task != nullptr) ltsim::current_task->update_failed = !success;
+  return success ? 1 : 0;
 }
 
 }  // namespace
@@ -35,12 +44,12 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind) 
     return builtin(p, value, __ATOMIC_SEQ_CST);                                               \
   }
 
-#define LTSIM_ATOMIC_COMPARE(bits, type, name)                                                               \
-  extern "C" int __tsan_atomic##bits##_compare_exchange_##name(                                              \
-      volatile type* p, type* expected, type desired, int /*order*/, int /*failure_order*/) {                \
-    point(p, sizeof(type), OperationKind::atomic_update);                                                    \
-    return __atomic_compare_exchange_n(p, expected, desired, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST) ? 1  \
-                                                                                                        : 0; \
+#define LTSIM_ATOMIC_COMPARE(bits, type, name)                                                         \
+  extern "C" int __tsan_atomic##bits##_compare_exchange_##name(                                        \
+      volatile type* p, type* expected, type desired, int /*order*/, int /*failure_order*/) {          \
+    point(p, sizeof(type), OperationKind::atomic_update);                                              \
+    return updated(                                                                                    \
+        __atomic_compare_exchange_n(p, expected, desired, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST)); \
   }
 
 #define LTSIM_ATOMICS(bits, type)                                                                           \
@@ -68,7 +77,7 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind) 
   extern "C" type __tsan_atomic##bits##_compare_exchange_val(volatile type* p, type expected, type desired, \
                                                              int /*order*/, int /*failure_order*/) {        \
     point(p, sizeof(type), OperationKind::atomic_update);                                                   \
-    __atomic_compare_exchange_n(p, &expected, desired, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);          \
+    updated(__atomic_compare_exchange_n(p, &expected, desired, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST)); \
     return expected;                                                                                        \
   }
 

@@ -25,7 +25,8 @@ void TextTrace::performs(const Task& task, const Operation& operation) noexcept 
 void TextTrace::blocks(const Task& task) noexcept {
   finish_write();
   line(task.name, "waits",
-       fmt::format("in {} {}", to_string(task.pending.kind), world_.objects().name(task.pending)));
+       fmt::format("in {} {}", to_string(world_.scheduler().pending(task).kind),
+                   world_.objects().name(world_.scheduler().pending(task))));
 }
 
 void TextTrace::ends(const Task& task) noexcept {

@@ -62,6 +62,8 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "thread_create";
     case OperationKind::thread_join:
       return "thread_join";
+    case OperationKind::thread_start:
+      return "thread_start";
     case OperationKind::thread_end:
       return "thread_end";
     case OperationKind::shm_open:
@@ -84,6 +86,33 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "yield";
   }
   return "?";
+}
+
+bool can_be_polling(OperationKind kind) noexcept {
+  switch (kind) {
+    case OperationKind::read:
+    case OperationKind::atomic_load:
+    case OperationKind::atomic_exchange:  // the loop of a spin lock
+    case OperationKind::sem_open:
+    case OperationKind::sem_trywait:
+    case OperationKind::sem_getvalue:
+    case OperationKind::mutex_trylock:
+    case OperationKind::shm_open:
+    case OperationKind::shm_status:
+    case OperationKind::clock_read:
+    case OperationKind::yield:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool depend(const Operation& one, const Operation& other) noexcept {
+  if (is_memory_access(one.kind) != is_memory_access(other.kind)) return false;
+  if (one.object != other.object) return false;
+  if (!is_memory_access(one.kind)) return one.object != 0 || (one.offset != 0 && one.offset == other.offset);
+  if (!changes_memory(one.kind) && !changes_memory(other.kind)) return false;
+  return one.offset < other.offset + other.bytes && other.offset < one.offset + one.bytes;
 }
 
 }  // namespace ltsim

@@ -38,6 +38,7 @@ enum class OperationKind : std::uint8_t {
   once,
   thread_create,
   thread_join,
+  thread_start,
   thread_end,
   shm_open,
   shm_status,
@@ -60,16 +61,30 @@ enum class OperationKind : std::uint8_t {
   return is_memory_access(kind) && kind != OperationKind::read && kind != OperationKind::atomic_load;
 }
 
+/// Whether a task can do it again and again without anything changing: looking, and trying in vain.
+[[nodiscard]] bool can_be_polling(OperationKind kind) noexcept;
+
 /// Number of a named thing of the world: a semaphore, a segment, a mutex; 0 is "no object".
 using ObjectId = std::uint32_t;
 
 struct Operation {
   OperationKind kind = OperationKind::read;
-  std::uint8_t bytes = 0;    ///< of a memory access, 1 to 16
-  ObjectId object = 0;       ///< what it acts on
-  std::uint32_t offset = 0;  ///< of a memory access: byte within the segment
+  std::uint8_t bytes = 0;  ///< of a memory access, 1 to 16
+  ObjectId object = 0;     ///< what it acts on
+  /// Of a memory access in a segment: the byte. Of what has no object: the low half of the address, which tells
+  /// places apart and means nothing in another run; 0 = nothing in particular.
+  std::uint32_t offset = 0;
+  /// Of a memory access: where in the program's code, counted from its begin; 0 = not known.
+  std::uint32_t site = 0;
 
-  bool operator==(const Operation&) const = default;
+  /// Equal as steps, wherever in the code they stand.
+  bool operator==(const Operation& other) const noexcept {
+    return kind == other.kind && bytes == other.bytes && object == other.object && offset == other.offset;
+  }
 };
+
+/// Whether the order of the two can matter to anybody: they act on the same thing, and one changes it.
+/// Operations that act on nothing in particular (clocks, sleeping) depend on nothing.
+[[nodiscard]] bool depend(const Operation& one, const Operation& other) noexcept;
 
 }  // namespace ltsim

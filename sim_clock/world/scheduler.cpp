@@ -15,6 +15,7 @@ constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]] = n
 
 void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   strategy_ = &strategy;
+  strategy_follows_steps_ = strategy.follows_steps();
   listener_ = listener;
   running_ = nullptr;
   clock_.reset();
@@ -67,7 +68,11 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.timed_out = false;
   task.detached = false;
   task.joined = false;
-  task.pending = Operation{};
+  pending_[task.id] = Operation{.kind = OperationKind::thread_start};
+  task.looked_at = Operation{};
+  task.looks_count = 0;
+  task.steps_since_look = 0;
+  task.update_failed = false;
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
@@ -84,7 +89,7 @@ void Scheduler::run() {
   if (!outcome_.passed() || unfinished_count_ == 0) return;
   main_context_.adopt_current();
   const auto options = runnable_tasks(0);
-  running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options)].get();
+  running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options, 0, false)].get();
   Context::switch_between(main_context_, running_->context);
 }
 
@@ -114,7 +119,7 @@ void Scheduler::run_task(void* argument) noexcept {
 
 void Scheduler::finish_running() noexcept {
   Task& self = *running_;
-  self.pending = Operation{.kind = OperationKind::thread_end};
+  pending_[self.id] = Operation{.kind = OperationKind::thread_end};
   self.state = Task::State::finished;
   make_unrunnable(self);
   --unfinished_count_;
@@ -133,7 +138,7 @@ void Scheduler::finish_running() noexcept {
 
 void Scheduler::point(Operation operation) noexcept {
   Task& self = *running_;
-  self.pending = operation;
+  pending_[self.id] = operation;
   clock_.pass(point_cost);
   if (++points_ > points_max_) [[unlikely]] {
     const GhostScope ghost;
@@ -144,18 +149,40 @@ void Scheduler::point(Operation operation) noexcept {
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, operation);
   if (clock_.next_deadline() <= clock_.now()) wake_due();
+  const bool give_way = gives_way(self, operation);
   if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
   if (runnable_count_ > 1) {
-    // Who yields wants somebody else to run: the default is then the next task, and this one comes last.
-    const auto from = static_cast<TaskId>(self.id + (operation.kind == OperationKind::yield ? 1 : 0));
-    const TaskId next = choose_task(runnable_tasks(from));
+    // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
+    const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
+    const TaskId next = choose_task(runnable_tasks(from), self.id, give_way);
     if (next != self.id) switch_to(*tasks_[next]);
   }
   mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(operation.kind)} << 40U |
-      std::uint64_t{operation.bytes} << 32U | operation.offset);
+      std::uint64_t{operation.bytes} << 32U | (operation.object == 0 ? 0 : operation.offset));
   mix(std::uint64_t{operation.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
+  if (strategy_follows_steps_) strategy_->performs(self.id, operation);
   if (listener_ != nullptr) [[unlikely]]
     listener_->performs(self, operation);
+}
+
+bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {
+  const bool looks = can_be_polling(operation.kind) ||
+                     (operation.kind == OperationKind::atomic_update && task.update_failed);
+  task.update_failed = false;
+  if (!looks) {
+    task.looks_count = 0;
+    return false;
+  }
+  constexpr std::uint32_t longest_loop = 8;  // looks between two looks at the same thing
+  if (operation == task.looked_at) {
+    ++task.looks_count;
+    task.steps_since_look = 0;
+  } else if (++task.steps_since_look > longest_loop || task.looks_count == 0) {
+    task.looked_at = operation;
+    task.looks_count = 1;
+    task.steps_since_look = 0;
+  }
+  return operation.kind == OperationKind::yield || task.looks_count >= looks_before_giving_way;
 }
 
 Scheduler::Wake Scheduler::block(WaitKey key, SimTime deadline) noexcept {
@@ -191,15 +218,16 @@ std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
 }
 
 std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept {
-  LTSIM_CHECK(count >= 1 && count <= options_.size());
+  LTSIM_CHECK(count >= 1);
   if (count == 1) return 0;
   if (listener_ != nullptr) {
     std::string question{what};
     make_one_word(question);
     listener_->asks(running_, question);
   }
-  for (std::size_t i = 0; i < count; ++i) options_[i] = i;
-  const std::size_t chosen = ask(ChoiceKind::scenario, std::span{options_}.first(count));
+  ++decisions_;
+  const std::size_t chosen = strategy_->answer(count);
+  LTSIM_CHECK(chosen < count);
   mix(chosen);
   return chosen;
 }
@@ -221,7 +249,7 @@ Task* Scheduler::next_after_stop() noexcept {
   wake_due();
   while (runnable_count_ == 0) nobody_can_run();
   const auto options = runnable_tasks(0);
-  return tasks_[options.size() == 1 ? options[0] : choose_task(options)].get();
+  return tasks_[options.size() == 1 ? options[0] : choose_task(options, running_->id, false)].get();
 }
 
 void Scheduler::nobody_can_run() noexcept {
@@ -237,14 +265,25 @@ void Scheduler::nobody_can_run() noexcept {
   wake_due();
 }
 
-TaskId Scheduler::choose_task(std::span<const std::uint64_t> options) noexcept {
-  return static_cast<TaskId>(options[ask(ChoiceKind::task, options)]);
+TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId running,
+                              bool running_gives_way) noexcept {
+  if (in_fair_tail()) [[unlikely]]
+    return static_cast<TaskId>(options[0]);
+  ++decisions_;
+  return static_cast<TaskId>(options[strategy_->choose_task({.options = options,
+                                                             .running = running,
+                                                             .running_gives_way = running_gives_way,
+                                                             .pending = pending_})]);
 }
 
 void Scheduler::choose_slow_moment() noexcept {
+  if (in_fair_tail()) [[unlikely]]
+    return;
   ++decisions_;
   const SimTime next = clock_.next_deadline();
-  const SlowMoment moment = strategy_->slow_moment(next == VirtualClock::never ? next : next - clock_.now());
+  const SlowMoment moment =
+      strategy_->slow_moment({.until_next_timer = next == VirtualClock::never ? next : next - clock_.now(),
+                              .running = running_->id});
   if (moment.duration == SimTime{0}) return;
   if (!moment.others_go_on) {
     clock_.pass(moment.duration);
@@ -258,11 +297,6 @@ void Scheduler::choose_slow_moment() noexcept {
   clock_.arm(clock_.now() + moment.duration, self.id);
   Task* const other = next_after_stop();
   if (other != &self) switch_to(*other);
-}
-
-std::size_t Scheduler::ask(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept {
-  ++decisions_;
-  return strategy_->choose(kind, options);
 }
 
 std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
@@ -327,8 +361,8 @@ std::string Scheduler::describe_waiting() const {
     const Task& task = *tasks_[i];
     if (task.state != Task::State::blocked) continue;
     if (!text.empty()) text += "; ";
-    text += fmt::format("{} waits in {} {}", task.name, to_string(task.pending.kind),
-                        world_.objects().name(task.pending));
+    text += fmt::format("{} waits in {} {}", task.name, to_string(pending(task).kind),
+                        world_.objects().name(pending(task)));
   }
   return text;
 }

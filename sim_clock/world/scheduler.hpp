@@ -34,6 +34,8 @@ class Scheduler {
   /// What one scheduling point costs in virtual time: enough that a loop that polls a clock ends.
   static constexpr SimTime point_cost{100};
   static constexpr std::uint64_t points_max_default = 1'000'000;
+  /// A task that looks at the same thing so often, without changing anything between, waits for others.
+  static constexpr std::uint32_t looks_before_giving_way = 16;
 
   explicit Scheduler(World& world) noexcept : world_(world) {}
 
@@ -89,6 +91,8 @@ class Scheduler {
   [[nodiscard]] std::size_t tasks_count() const noexcept { return tasks_count_; }
   [[nodiscard]] Task& task(TaskId id) noexcept { return *tasks_[id]; }
   [[nodiscard]] const Task& task(TaskId id) const noexcept { return *tasks_[id]; }
+  /// The operation at whose scheduling point the task stands or that it last passed.
+  [[nodiscard]] const Operation& pending(const Task& task) const noexcept { return pending_[task.id]; }
   [[nodiscard]] StepListener* listener() noexcept { return listener_; }
 
  private:
@@ -97,9 +101,13 @@ class Scheduler {
   /// The next task after the running one stopped being runnable; null when all have finished.
   Task* next_after_stop() noexcept;
   void nobody_can_run() noexcept;
-  TaskId choose_task(std::span<const std::uint64_t> options) noexcept;
+  TaskId choose_task(std::span<const std::uint64_t> options, TaskId running, bool running_gives_way) noexcept;
   void choose_slow_moment() noexcept;
-  std::size_t ask(ChoiceKind kind, std::span<const std::uint64_t> options) noexcept;
+  /// Whether the task waits for others, though it can run.
+  [[nodiscard]] static bool gives_way(Task& task, const Operation& operation) noexcept;
+  /// An execution that will not end is given a fair end: tasks take turns, time and faults stand still. What
+  /// does not end then is a livelock, and not the strategy's doing.
+  [[nodiscard]] bool in_fair_tail() const noexcept { return points_ > points_max_ / 2; }
   /// Runnable tasks in the order of their numbers, from `from` on and then around.
   std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept;
   void switch_to(Task& next) noexcept;
@@ -121,7 +129,8 @@ class Scheduler {
   std::size_t runnable_count_ = 0;
   std::size_t stalled_count_ = 0;
   std::array<std::uint64_t, tasks_max> options_{};
-  std::vector<std::unique_ptr<Task>> tasks_;  // pooled; the first tasks_count_ belong to this execution
+  std::array<Operation, tasks_max> pending_{};  // by task number
+  std::vector<std::unique_ptr<Task>> tasks_;    // pooled; the first tasks_count_ belong to this execution
   std::size_t tasks_count_ = 0;
   std::size_t unfinished_count_ = 0;
 
@@ -132,6 +141,7 @@ class Scheduler {
   std::uint64_t hash_ = 0;
   bool clock_was_read_ = false;
   bool has_run_ = false;
+  bool strategy_follows_steps_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

@@ -37,9 +37,12 @@ struct Task {
   bool timed_out = false;  ///< the last block() ended by its deadline
   bool detached = false;
   bool joined = false;
-  Operation pending;     ///< the operation at whose scheduling point the task stands or that it last passed
-  WaitKey wait_key = 0;  ///< while blocked
-  std::uint64_t blocked_since = 0;    ///< while blocked: orders the waiters of one key
+  WaitKey wait_key = 0;             ///< while blocked
+  std::uint64_t blocked_since = 0;  ///< while blocked: orders the waiters of one key
+  Operation looked_at;              ///< what the task looks at again and again, if it polls
+  std::uint32_t looks_count = 0;    ///< how often in a row it has looked at that, other looks between
+  std::uint32_t steps_since_look = 0;
+  bool update_failed = false;         ///< its last compare-and-exchange found another value
   SimTime deadline = SimTime::max();  ///< while blocked
   std::string name;                   ///< "process/task"
 

@@ -72,7 +72,8 @@ std::string World::blocked_in(std::string_view task_name) const {
   for (std::size_t i = 0; i < scheduler_.tasks_count(); ++i) {
     const Task& task = scheduler_.task(static_cast<TaskId>(i));
     if (task.name != task_name || task.state != Task::State::blocked) continue;
-    return fmt::format("{} {}", to_string(task.pending.kind), objects_.name(task.pending));
+    return fmt::format("{} {}", to_string(scheduler_.pending(task).kind),
+                       objects_.name(scheduler_.pending(task)));
   }
   return {};
 }

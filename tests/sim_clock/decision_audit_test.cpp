@@ -67,8 +67,10 @@ TEST(DecisionAudit, the_random_walk_over_two_tasks_is_fair) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     strategy.begin_execution(seed);
     const std::array<std::uint64_t, 2> options{0, 1};
-    EXPECT_TRUE(two_tasks_look_fair([&] { return strategy.choose(ChoiceKind::task, options); }))
-        << "seed " << seed;
+    EXPECT_TRUE(two_tasks_look_fair([&] {
+      return strategy.choose_task({.options = options, .pending = {}});
+    })) << "seed "
+        << seed;
   }
 }
 
@@ -103,7 +105,7 @@ TEST(DecisionAudit, each_of_seven_tasks_is_chosen_alike) {
   strategy.begin_execution(3);
   const std::array<std::uint64_t, 7> options{0, 1, 2, 3, 4, 5, 6};
   std::vector<double> counts(7, 0);
-  for (int i = 0; i < decisions; ++i) ++counts[strategy.choose(ChoiceKind::task, options)];
+  for (int i = 0; i < decisions; ++i) ++counts[strategy.choose_task({.options = options, .pending = {}})];
   EXPECT_FALSE(is_suspicious(chi_square(counts, std::vector<double>(7, decisions / 7.0)), 6));
 }
 
@@ -115,7 +117,7 @@ TEST(DecisionAudit, slow_moments_are_as_often_of_one_order_of_magnitude_as_of_an
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     strategy.begin_execution(seed);
     for (int i = 0; i < 20'000; ++i) {
-      const SlowMoment moment = strategy.slow_moment(VirtualClock::never);
+      const SlowMoment moment = strategy.slow_moment({});
       if (moment.duration == SimTime{0}) continue;
       const auto microseconds = static_cast<std::uint64_t>(moment.duration.count()) / 1000;
       ASSERT_TRUE(std::has_single_bit(microseconds));
@@ -135,7 +137,8 @@ TEST(RandomStrategy, makes_the_same_choices_for_the_same_seed_and_others_for_ano
     strategy.begin_execution(seed);
     const std::array<std::uint64_t, 3> options{0, 1, 2};
     std::string text;
-    for (int i = 0; i < 40; ++i) text += static_cast<char>('0' + strategy.choose(ChoiceKind::task, options));
+    for (int i = 0; i < 40; ++i)
+      text += static_cast<char>('0' + strategy.choose_task({.options = options, .pending = {}}));
     return text;
   };
   EXPECT_EQ(choices(1), choices(1));

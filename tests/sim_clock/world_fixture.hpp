@@ -18,11 +18,12 @@ class DefaultStrategy final : public Strategy {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "default"; }
   void begin_execution(std::uint64_t /*seed*/) noexcept override {}
-  [[nodiscard]] std::size_t choose(ChoiceKind /*kind*/,
-                                   std::span<const std::uint64_t> /*options*/) noexcept override {
+  [[nodiscard]] std::size_t choose_task(const TaskChoice& /*choice*/) noexcept override { return 0; }
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& /*choice*/) noexcept override { return {}; }
+  [[nodiscard]] std::size_t strike(FaultKind /*kind*/, std::size_t /*variants*/) noexcept override {
     return 0;
   }
-  [[nodiscard]] SlowMoment slow_moment(SimTime /*until_next_timer*/) noexcept override { return {}; }
+  [[nodiscard]] std::size_t answer(std::size_t /*count*/) noexcept override { return 0; }
 };
 
 inline void PrintTo(const Outcome& outcome, std::ostream* out) {
