@@ -67,10 +67,12 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
     report.decisions += world_.scheduler().decisions();
     report.points += world_.scheduler().points();
     traces.insert(hash);
+    ExecutionSummary summary{.points = world_.scheduler().points()};
     if (world_.scheduler().outcome().passed()) {
       if (std::has_single_bit(execution) && !repeats(scenario, strategy, seed, hash)) {
         throw not_repeatable(scenario, strategy, seed);
       }
+      strategy.learn(summary);
       continue;
     }
     const Outcome outcome = world_.scheduler().outcome();
@@ -78,6 +80,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
                                     [&](const Failure& failure) { return failure.outcome == outcome; });
     if (known != report.failures.end()) {
       ++known->count;
+      strategy.learn(summary);
       continue;
     }
     Failure failure = record(scenario, strategy, seed);
@@ -87,6 +90,8 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
     failure.count = 1;
     report.failures.push_back(std::move(failure));
     if (!options.keep_going) break;
+    summary.failed_anew = true;
+    strategy.learn(summary);
   }
   report.seconds = elapsed().count();
   report.distinct_schedules = traces.size();

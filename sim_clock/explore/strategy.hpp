@@ -40,6 +40,8 @@ struct SlowMoment {
 struct SlowMomentChoice {
   SimTime until_next_timer = VirtualClock::never;  ///< >= 0; `never` when no timer is armed
   TaskId running = 0;
+  std::span<const std::uint64_t> runnable;  ///< one bit a task, 64 to a word; the running one is among them
+  std::span<const Operation> pending;       ///< by task number: what each will do next
 };
 
 /// What an execution was like, for strategies that learn.
@@ -66,7 +68,8 @@ class Strategy {
   [[nodiscard]] virtual std::size_t choose_task(const TaskChoice& choice) noexcept = 0;
 
   /// Whether the task that is about to take a step is held up first: its processor, or the whole machine, is
-  /// slow. So a time-out may fire whose peer is merely late. Only asked while time matters to somebody.
+  /// slow. So a time-out may fire whose peer is merely late. Only asked while time matters to somebody, and
+  /// asked again after the whole machine was slow, until it is not.
   /// @return  the default is no slow moment
   [[nodiscard]] virtual SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept = 0;
 

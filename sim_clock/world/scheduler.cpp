@@ -279,17 +279,21 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
 void Scheduler::choose_slow_moment() noexcept {
   if (in_fair_tail()) [[unlikely]]
     return;
-  ++decisions_;
-  const SimTime next = clock_.next_deadline();
-  const SlowMoment moment =
-      strategy_->slow_moment({.until_next_timer = next == VirtualClock::never ? next : next - clock_.now(),
-                              .running = running_->id});
-  if (moment.duration == SimTime{0}) return;
-  if (!moment.others_go_on) {
+  SlowMoment moment;
+  for (unsigned i = 0; i < slow_moments_max; ++i) {
+    ++decisions_;
+    const SimTime next = clock_.next_deadline();
+    moment =
+        strategy_->slow_moment({.until_next_timer = next == VirtualClock::never ? next : next - clock_.now(),
+                                .running = running_->id,
+                                .runnable = runnable_,
+                                .pending = pending_});
+    if (moment.duration == SimTime{0}) return;
+    if (moment.others_go_on) break;
     clock_.pass(moment.duration);
     wake_due();
-    return;
   }
+  if (!moment.others_go_on) return;
   Task& self = *running_;
   self.state = Task::State::stalled;
   ++stalled_count_;

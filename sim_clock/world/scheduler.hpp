@@ -34,6 +34,8 @@ class Scheduler {
   /// What one scheduling point costs in virtual time: enough that a loop that polls a clock ends.
   static constexpr SimTime point_cost{100};
   static constexpr std::uint64_t points_max_default = 1'000'000;
+  /// So often in a row time may pass for everybody before one step.
+  static constexpr unsigned slow_moments_max = 64;
   /// A task that looks at the same thing so often, without changing anything between, waits for others.
   static constexpr std::uint32_t looks_before_giving_way = 16;
 

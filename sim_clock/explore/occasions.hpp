@@ -1,0 +1,73 @@
+// Where in an execution something is to happen that can happen on many occasions: k places drawn uniformly
+// from as many occasions as executions before had.
+//
+// The number of occasions is learned: a long execution raises the estimate at once, shorter ones lower it
+// slowly. Places beyond the end of an execution are lost, so a part of the draws is made log-uniformly: near
+// the begin something happens in every execution, however short.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "sim_clock/explore/random_generator.hpp"
+
+namespace ltsim {
+
+class Occasions {
+ public:
+  static constexpr std::size_t places_max = 8;
+
+  /// Draws the places of an execution.
+  /// @param places_count  0 to places_max
+  void begin(RandomGenerator& generator, std::size_t places_count) noexcept {
+    passed_ = 0;
+    places_count_ = places_count;
+    for (std::size_t i = 0; i < places_count; ++i) {
+      const bool log_uniform = generator.below(4) == 0;
+      const auto bound =
+          log_uniform ? std::uint32_t{1} << generator.below(order_of_magnitude() + 1) : estimate_;
+      places_[i] = generator.below(std::max(bound, 1U));
+    }
+    std::sort(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(places_count));
+    next_ = 0;
+  }
+
+  /// The next occasion. @return how many of the places it is
+  [[nodiscard]] std::size_t pass() noexcept {
+    const std::uint64_t occasion = passed_++;
+    std::size_t hits = 0;
+    for (; next_ < places_count_ && places_[next_] <= occasion; ++next_) ++hits;
+    return hits;
+  }
+
+  /// Occasions of this execution so far.
+  [[nodiscard]] std::uint64_t passed() const noexcept { return passed_; }
+
+  /// The execution has ended and counts.
+  void learn() noexcept {
+    constexpr std::uint64_t most = std::uint64_t{1} << 30U;
+    const auto seen = static_cast<std::uint32_t>(std::min(passed_, most));
+    estimate_ = std::max({seen, estimate_ - estimate_ / 16, 1U});
+  }
+
+  /// Occasions to expect in an execution.
+  [[nodiscard]] std::uint32_t estimate() const noexcept { return estimate_; }
+
+ private:
+  [[nodiscard]] std::uint32_t order_of_magnitude() const noexcept {
+    return static_cast<std::uint32_t>(std::bit_width(estimate_)) - 1;
+  }
+
+  static constexpr std::uint32_t first_estimate = 64;
+
+  std::uint32_t estimate_ = first_estimate;
+  std::uint64_t passed_ = 0;
+  std::array<std::uint64_t, places_max> places_{};
+  std::size_t places_count_ = 0;
+  std::size_t next_ = 0;
+};
+
+}  // namespace ltsim

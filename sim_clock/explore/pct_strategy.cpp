@@ -1,0 +1,62 @@
+#include "sim_clock/explore/pct_strategy.hpp"
+
+#include "sim_clock/explore/task_set.hpp"
+
+namespace ltsim {
+namespace {
+
+constexpr std::uint64_t drawn_bit = std::uint64_t{1} << 63U;
+
+}  // namespace
+
+SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
+  priorities_.fill(0);
+  next_lower_ = drawn_bit - 1;
+  std::size_t change_points = 0;  // d - 1
+  while (change_points < 5 && generator().below(3) != 0) ++change_points;
+  change_points_.begin(generator(), change_points);
+  switch (generator().below(8)) {
+    case 0:
+      return TimeMode::calm;
+    case 1:
+      return TimeMode::bursts;
+    case 2:
+      return TimeMode::silence;
+    default:
+      return TimeMode::clock;
+  }
+}
+
+void PctStrategy::learn(const ExecutionSummary& summary) noexcept {
+  SamplingStrategy::learn(summary);
+  change_points_.learn();
+}
+
+std::size_t PctStrategy::choose_task(const TaskChoice& choice) noexcept {
+  if (choice.running_gives_way) lower(choice.running);
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < choice.options.size(); ++i) {
+    if (priority_of(choice.options[i]) > priority_of(choice.options[best])) best = i;
+  }
+  return best;
+}
+
+bool PctStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
+  bool first = true;
+  for_each_task(choice.runnable,
+                [&](TaskId task) { first = first && priority_of(clock) > priority_of(task); });
+  return first;
+}
+
+void PctStrategy::performs(TaskId task, const Operation& /*operation*/) noexcept {
+  if (change_points_.pass() != 0) lower(task);
+}
+
+std::uint64_t PctStrategy::priority_of(std::size_t task) noexcept {
+  if (priorities_[task] == 0) priorities_[task] = generator().next() | drawn_bit;
+  return priorities_[task];
+}
+
+void PctStrategy::lower(std::size_t task) noexcept { priorities_[task] = next_lower_--; }
+
+}  // namespace ltsim

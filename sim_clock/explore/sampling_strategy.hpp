@@ -1,0 +1,53 @@
+// What all randomised strategies have in common: a generator, and how they let time pass, let faults strike
+// and answer questions. They differ in how they choose tasks.
+//
+// Time. In each execution it passes in one of these ways while somebody could run:
+//   calm     never;
+//   bursts   with the same probability, 2^-3 to 2^-13, at each point: the machine, or the one task at hand;
+//   silence  one to three times, each at a place drawn uniformly from the whole execution;
+//   clock    the clock takes part like a task: it "runs" by going on to the next timer, when the strategy
+//            chooses it (clock_goes_first()).
+// A slow moment lasts until the next timer, or for a time drawn log-uniformly from 1 us to 1 s, or for a
+// multiple of the time to the next timer: time-outs come in multiples.
+//
+// Faults. Of the kinds that are granted, each is on in every second execution, and then strikes at places
+// drawn uniformly from its occasions.
+#pragma once
+
+#include <array>
+
+#include "sim_clock/explore/occasions.hpp"
+#include "sim_clock/explore/random_generator.hpp"
+#include "sim_clock/explore/strategy.hpp"
+
+namespace ltsim {
+
+class SamplingStrategy : public Strategy {
+ public:
+  void begin_execution(std::uint64_t seed) noexcept final;
+  void learn(const ExecutionSummary& summary) noexcept override;
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept final;
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept final;
+  [[nodiscard]] std::size_t answer(std::size_t count) noexcept final;
+
+ protected:
+  enum class TimeMode : std::uint8_t { calm, bursts, silence, clock };
+
+  /// Draws what the kind of strategy needs for an execution. @return how time passes in it
+  virtual TimeMode begin() noexcept = 0;
+  /// In time mode `clock`, with a timer armed: whether time goes on to the next timer before anybody runs.
+  [[nodiscard]] virtual bool clock_goes_first(const SlowMomentChoice& /*choice*/) noexcept { return false; }
+
+  [[nodiscard]] RandomGenerator& generator() noexcept { return generator_; }
+
+ private:
+  [[nodiscard]] SlowMoment draw_slow_moment(SimTime until_next_timer) noexcept;
+
+  RandomGenerator generator_{0};
+  TimeMode time_mode_ = TimeMode::calm;
+  unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
+  Occasions slow_moments_;
+  std::array<Occasions, fault_kinds_count> faults_;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,31 @@
+#include "sim_clock/explore/swarm_strategy.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ltsim {
+
+void SwarmStrategy::begin_execution(std::uint64_t seed) noexcept {
+  // Not the generator of the member: what it draws must not depend on how it was drawn itself.
+  RandomGenerator generator{splitmix64(seed)};
+  const std::uint32_t yields = std::accumulate(yields_.begin(), yields_.end(), std::uint32_t{0});
+  if (yields == 0 || generator.below(2) == 0) {
+    drawn_ = generator.below(members_count);
+  } else {
+    std::uint32_t place = generator.below(yields);
+    for (drawn_ = 0; place >= yields_[drawn_]; ++drawn_) place -= yields_[drawn_];
+  }
+  current_ = members_[drawn_];
+  current_->begin_execution(seed);
+}
+
+void SwarmStrategy::learn(const ExecutionSummary& summary) noexcept {
+  current_->learn(summary);
+  constexpr std::uint32_t worth_of_a_failure = 4096;
+  constexpr std::uint64_t most_at_once = 1024;
+  const auto states = static_cast<std::uint32_t>(std::min(summary.new_states * 16, most_at_once));
+  yields_[drawn_] -= (yields_[drawn_] + 31) / 32;
+  yields_[drawn_] += states + (summary.failed_anew ? worth_of_a_failure : 0);
+}
+
+}  // namespace ltsim
