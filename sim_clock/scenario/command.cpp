@@ -1,0 +1,49 @@
+#include "sim_clock/scenario/command.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace ltsim {
+
+const Scenario& scenario_of_name(const std::string& name) {
+  const Scenario* const scenario = find_scenario(name);
+  if (scenario == nullptr)
+    throw UsageError{fmt::format("there is no scenario \"{}\"; \"ltsim list\" shows those there are", name)};
+  return *scenario;
+}
+
+Schedule read_schedule(const std::string& path) {
+  std::ifstream file{path, std::ios::binary};
+  if (!file) throw UsageError{fmt::format("{}: cannot be read", path)};
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  auto schedule = parse_schedule(text);
+  if (!schedule)
+    throw UsageError{fmt::format("{}:{}: {}", path, schedule.error().line, schedule.error().reason)};
+  return std::move(*schedule);
+}
+
+bool write_file(const std::filesystem::path& path, const std::string& text) {
+  std::error_code error;
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
+  std::ofstream file{path, std::ios::binary};
+  file << text;
+  file.close();
+  return static_cast<bool>(file);
+}
+
+void write_asked_for_file(const std::filesystem::path& path, const std::string& text) {
+  if (!write_file(path, text)) throw UsageError{fmt::format("{}: cannot be written", path.string())};
+}
+
+std::string as_shell_word(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:,=@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
+  return quoted + "'";
+}
+
+}  // namespace ltsim
