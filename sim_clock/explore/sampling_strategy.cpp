@@ -6,6 +6,7 @@ namespace ltsim {
 namespace {
 
 constexpr SimTime shortest_slow_moment{1000};
+constexpr SimTime longest_silence = std::chrono::seconds{16};
 constexpr std::uint32_t orders_of_magnitude = 20;  // 1 us << 20 is about 1 s
 
 }  // namespace
@@ -36,7 +37,7 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
     case TimeMode::silence:
       return is_place ? draw_slow_moment(choice.until_next_timer) : SlowMoment{};
     case TimeMode::clock:
-      if (choice.until_next_timer == VirtualClock::never || !clock_goes_first(choice)) return {};
+      if (choice.until_next_timer > longest_silence || !clock_goes_first(choice)) return {};
       return {.duration = std::max(choice.until_next_timer, SimTime{1})};
   }
   return {};
@@ -45,13 +46,13 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
 SlowMoment SamplingStrategy::draw_slow_moment(SimTime until_next_timer) noexcept {
   SlowMoment moment;
   moment.others_go_on = generator_.below(2) == 1;
-  const bool a_timer_is_armed = until_next_timer != VirtualClock::never;
-  if (a_timer_is_armed && generator_.below(2) == 0) {
+  const bool a_timer_is_near = until_next_timer <= longest_silence;
+  if (a_timer_is_near && generator_.below(2) == 0) {
     // Just past the n-th multiple, n = 1 in one case of two, 2 to 3 in one of four ...
     std::uint32_t multiple = 1;
     while (multiple < 64 && generator_.bits(1) == 1) multiple *= 2;
     multiple += generator_.below(multiple);
-    moment.duration = std::max(until_next_timer, SimTime{1}) * multiple;
+    moment.duration = std::min(std::max(until_next_timer, SimTime{1}) * multiple, longest_silence);
   } else {
     const std::uint32_t order = generator_.below(orders_of_magnitude + 1);
     const SimTime least = shortest_slow_moment * (std::int64_t{1} << order);

@@ -7,8 +7,9 @@
 //   silence  one to three times, each at a place drawn uniformly from the whole execution;
 //   clock    the clock takes part like a task: it "runs" by going on to the next timer, when the strategy
 //            chooses it (clock_goes_first()).
-// A slow moment lasts until the next timer, or for a time drawn log-uniformly from 1 us to 1 s, or for a
-// multiple of the time to the next timer: time-outs come in multiples.
+// A slow moment lasts until the next timer, or for a time drawn log-uniformly from 1 us to 2 s, or for a
+// multiple of the time to the next timer: time-outs come in multiples. Nobody who could run is held
+// up for more than 16 s at a time: that is no slow machine any more.
 //
 // Faults. Of the kinds that are granted, each is on in every second execution, and then strikes at places
 // drawn uniformly from its occasions.

@@ -24,9 +24,7 @@ bool is_simulated(pthread_t thread) noexcept {
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                               void* argument) noexcept {
   if (current_task != nullptr) {
-    int state = PTHREAD_CREATE_JOINABLE;
-    if (attributes != nullptr) pthread_attr_getdetachstate(attributes, &state);
-    return current_task->world->threads().create(thread, state == PTHREAD_CREATE_DETACHED, start, argument);
+    return current_task->world->threads().create(thread, attributes, start, argument);
   }
   if (ltsim::World::refuses_real("pthread_create")) return EAGAIN;
   return LTSIM_NEXT(pthread_create)(thread, attributes, start, argument);

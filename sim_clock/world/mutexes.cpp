@@ -42,6 +42,9 @@ WaitKey mutex_key(const void* address, std::int32_t kind) noexcept {
   return wait_key(address, (kind & shared_between_processes) != 0) | std::uint64_t{1} << 61U;
 }
 
+/// glibc: nptl/pthreadP.h, PTHREAD_MUTEX_PRIO_INHERIT_NP.
+bool inherits_priority(std::int32_t kind) noexcept { return (kind & 32) != 0; }
+
 WaitKey condition_key(const pthread_cond_t* condition) noexcept {
   constexpr unsigned shared_between_processes = 1;
   return wait_key(condition, (condition->__data.__wrefs & shared_between_processes) != 0);
@@ -100,14 +103,29 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimT
     if ((state.kind & kind_mask) == PTHREAD_MUTEX_ERRORCHECK) return EDEADLK;
   }
   while (state.owner_plus_one != 0) {
-    if (world_.scheduler().block(mutex_key(address, state.kind), deadline) == Scheduler::Wake::timed_out &&
-        state.owner_plus_one != 0) {
+    if (wait_for_owner(state, address, deadline) == Scheduler::Wake::timed_out && state.owner_plus_one != 0) {
       return ETIMEDOUT;
     }
   }
   state.owner_plus_one = self;
   state.locked_count = 1;
+  if (inherits_priority(state.kind))
+    world_.scheduler().end_lending(mutex_key(address, state.kind), current_task);
   return 0;
+}
+
+Scheduler::Wake Mutexes::wait_for_owner(const State& state, const void* address, SimTime deadline) noexcept {
+  Scheduler& scheduler = world_.scheduler();
+  Task& self = *current_task;
+  Task& owner = scheduler.task(static_cast<TaskId>(state.owner_plus_one - 1));
+  const bool lends = inherits_priority(state.kind);
+  if (lends) scheduler.lend_priority(self, owner);
+  const auto wake = scheduler.block(mutex_key(address, state.kind), deadline);
+  if (lends) {
+    self.lends_to = VirtualClock::no_task;
+    scheduler.update_priority(owner);
+  }
+  return wake;
 }
 
 int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
@@ -143,7 +161,13 @@ int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
 void Mutexes::release(State& state, const void* address) noexcept {
   state.owner_plus_one = 0;
   state.locked_count = 0;
-  world_.scheduler().wake(mutex_key(address, state.kind), 1);
+  Scheduler& scheduler = world_.scheduler();
+  const WaitKey key = mutex_key(address, state.kind);
+  if (inherits_priority(state.kind)) {
+    scheduler.end_lending(key, nullptr);
+    scheduler.update_priority(*current_task);
+  }
+  scheduler.wake(key, 1);
 }
 
 int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {
@@ -164,7 +188,7 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   const auto wake = world_.scheduler().block(condition_key(condition), deadline);
   const std::uint32_t self = current_task->id + 1U;
   while (state.owner_plus_one != 0 && state.owner_plus_one != self) {
-    world_.scheduler().block(mutex_key(mutex, state.kind), VirtualClock::never);
+    wait_for_owner(state, mutex, VirtualClock::never);
   }
   state.owner_plus_one = self;
   ++state.locked_count;

@@ -5,7 +5,9 @@
 // error-checking) stays where pthread_mutex_init put it. Conditions hold no state: their waiters are known by
 // the address.
 //
-// Not here: robust mutexes whose owner dies (no simulated process dies yet), priority protocols (accepted,
+// PTHREAD_PRIO_INHERIT has its effect on Cpu::one_fifo.
+//
+// Not here: robust mutexes whose owner dies (no simulated process dies yet), PTHREAD_PRIO_PROTECT (accepted,
 // without effect).
 #pragma once
 
@@ -17,6 +19,7 @@
 
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/world/operation.hpp"
+#include "sim_clock/world/scheduler.hpp"
 
 namespace ltsim {
 
@@ -56,6 +59,8 @@ class Mutexes {
 
   State& resolve(pthread_mutex_t* mutex) noexcept;
   int acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept;
+  /// Blocks while somebody else owns the mutex, and lends its priority if the mutex says so.
+  Scheduler::Wake wait_for_owner(const State& state, const void* address, SimTime deadline) noexcept;
   int wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
                  SimTime deadline) noexcept;
   /// @return 0; or EPERM where the mutex's kind checks its owner. Otherwise the execution ends as an

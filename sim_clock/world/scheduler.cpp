@@ -39,6 +39,8 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   hash_ = 0;
   clock_was_read_ = false;
   has_run_ = false;
+  cpu_ = Cpu::many;
+  ready_ever_ = 0;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -69,6 +71,10 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.detached = false;
   task.joined = false;
   pending_[task.id] = Operation{.kind = OperationKind::thread_start};
+  task.priority = 0;
+  task.effective_priority = 0;
+  task.time_sharing = false;
+  task.lends_to = VirtualClock::no_task;
   task.looked_at = Operation{};
   task.looks_count = 0;
   task.steps_since_look = 0;
@@ -88,7 +94,7 @@ void Scheduler::run() {
   has_run_ = true;
   if (!outcome_.passed() || unfinished_count_ == 0) return;
   main_context_.adopt_current();
-  const auto options = runnable_tasks(0);
+  const auto options = candidates(0);
   running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options, 0, false)].get();
   Context::switch_between(main_context_, running_->context);
 }
@@ -154,7 +160,10 @@ void Scheduler::point(Operation operation) noexcept {
   if (runnable_count_ > 1) {
     // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
     const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
-    const TaskId next = choose_task(runnable_tasks(from), self.id, give_way);
+    if (cpu_ != Cpu::many && operation.kind == OperationKind::yield) self.ready_since = ready_ever_++;
+    const auto options = candidates(from);
+    const TaskId next =
+        options.size() == 1 ? static_cast<TaskId>(options[0]) : choose_task(options, self.id, give_way);
     if (next != self.id) switch_to(*tasks_[next]);
   }
   mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(operation.kind)} << 40U |
@@ -208,7 +217,7 @@ std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
     for (std::size_t i = 0; i < tasks_count_; ++i) {
       Task& task = *tasks_[i];
       if (task.state != Task::State::blocked || task.wait_key != key) continue;
-      if (longest == nullptr || task.blocked_since < longest->blocked_since) longest = &task;
+      if (longest == nullptr || goes_before(task, *longest)) longest = &task;
     }
     if (longest == nullptr) break;
     if (longest->deadline != VirtualClock::never) clock_.cancel(longest->id);
@@ -248,7 +257,7 @@ Task* Scheduler::next_after_stop() noexcept {
   if (unfinished_count_ == 0) return nullptr;
   wake_due();
   while (runnable_count_ == 0) nobody_can_run();
-  const auto options = runnable_tasks(0);
+  const auto options = candidates(0);
   return tasks_[options.size() == 1 ? options[0] : choose_task(options, running_->id, false)].get();
 }
 
@@ -350,6 +359,7 @@ void Scheduler::wake_due() noexcept {
 
 void Scheduler::make_runnable(Task& task) noexcept {
   task.state = Task::State::runnable;
+  task.ready_since = ready_ever_++;
   runnable_[task.id / 64] |= std::uint64_t{1} << (task.id % 64);
   ++runnable_count_;
 }

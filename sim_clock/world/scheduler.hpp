@@ -24,6 +24,7 @@
 #include "sim_clock/check/outcome.hpp"
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/explore/strategy.hpp"
+#include "sim_clock/world/cpu.hpp"
 #include "sim_clock/world/step_listener.hpp"
 #include "sim_clock/world/task.hpp"
 
@@ -50,6 +51,8 @@ class Scheduler {
   /// @param name  unique within the process
   Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
   void set_points_max(std::uint64_t points) noexcept { points_max_ = points; }
+  void set_cpu(Cpu cpu) noexcept { cpu_ = cpu; }
+  [[nodiscard]] Cpu cpu() const noexcept { return cpu_; }
   /// Called, outside the simulated world, each time that every task waits of its own accord, before time
   /// moves on.
   void add_idle_check(std::function<void()> check) { idle_checks_.push_back(std::move(check)); }
@@ -71,6 +74,18 @@ class Scheduler {
   /// Wakes up to `count_max` tasks blocked on `key`, longest waiting first.
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
+
+  // --- priorities; they matter on Cpu::one_fifo only (one_fifo.cpp) ---
+
+  /// @param priority      1 to 99; 0: none
+  /// @param time_sharing  shares the processor with its equals, as SCHED_RR does
+  void set_priority(Task& task, int priority, bool time_sharing) noexcept;
+  /// `waiter`, about to block, waits for a lock of `owner` that inherits priorities.
+  void lend_priority(Task& waiter, Task& owner) noexcept;
+  /// What those who wait for `key` have lent goes to the next owner, or (null) to nobody.
+  void end_lending(WaitKey key, Task* next_owner) noexcept;
+  /// Computes the effective priority anew.
+  void update_priority(Task& task) noexcept;
 
   /// A choice of the scenario: 0 to count - 1.
   [[nodiscard]] std::size_t choose(std::string_view what, std::size_t count) noexcept;
@@ -110,8 +125,21 @@ class Scheduler {
   /// An execution that will not end is given a fair end: tasks take turns, time and faults stand still. What
   /// does not end then is a livelock, and not the strategy's doing.
   [[nodiscard]] bool in_fair_tail() const noexcept { return points_ > points_max_ / 2; }
+  /// Those of `options` that one processor would run next, in place.
+  std::span<const std::uint64_t> keep_highest_priority(std::span<const std::uint64_t> options) noexcept;
+  /// Those that may run next.
+  std::span<const std::uint64_t> candidates(TaskId from) noexcept {
+    const auto options = runnable_tasks(from);
+    return cpu_ == Cpu::many ? options : keep_highest_priority(options);
+  }
   /// Runnable tasks in the order of their numbers, from `from` on and then around.
   std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept;
+  /// Of two that wait for the same: the longer waiting one; on one processor the one with the higher priority.
+  [[nodiscard]] bool goes_before(const Task& one, const Task& other) const noexcept {
+    if (cpu_ != Cpu::many && one.effective_priority != other.effective_priority)
+      return one.effective_priority > other.effective_priority;
+    return one.blocked_since < other.blocked_since;
+  }
   void switch_to(Task& next) noexcept;
   void wake_due() noexcept;
   void make_runnable(Task& task) noexcept;
@@ -144,6 +172,8 @@ class Scheduler {
   bool clock_was_read_ = false;
   bool has_run_ = false;
   bool strategy_follows_steps_ = false;
+  Cpu cpu_ = Cpu::many;
+  std::uint64_t ready_ever_ = 0;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

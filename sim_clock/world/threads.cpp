@@ -1,5 +1,7 @@
 #include "sim_clock/world/threads.hpp"
 
+#include <sched.h>
+
 #include <cerrno>
 
 #include <fmt/format.h>
@@ -8,13 +10,45 @@
 
 namespace ltsim {
 
-int Threads::create(pthread_t* thread, bool detached, void* (*start)(void*), void* argument) noexcept {
+namespace {
+
+struct ThreadAttributes {
+  bool detached = false;
+  int priority = 0;
+  bool time_sharing = false;
+};
+
+/// What pthread_create(3) makes of them: unless told otherwise a thread inherits its creator's priority.
+ThreadAttributes read(const pthread_attr_t* attributes, const Task& creator) noexcept {
+  ThreadAttributes result{.priority = creator.priority, .time_sharing = creator.time_sharing};
+  if (attributes == nullptr) return result;
+  int state = PTHREAD_CREATE_JOINABLE;
+  pthread_attr_getdetachstate(attributes, &state);
+  result.detached = state == PTHREAD_CREATE_DETACHED;
+  int inherits = PTHREAD_INHERIT_SCHED;
+  pthread_attr_getinheritsched(attributes, &inherits);
+  if (inherits == PTHREAD_INHERIT_SCHED) return result;
+  int policy = SCHED_OTHER;
+  sched_param parameters{};
+  pthread_attr_getschedpolicy(attributes, &policy);
+  pthread_attr_getschedparam(attributes, &parameters);
+  result.priority = parameters.sched_priority;
+  result.time_sharing = policy == SCHED_RR;
+  return result;
+}
+
+}  // namespace
+
+int Threads::create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                    void* argument) noexcept {
+  const ThreadAttributes wanted = read(attributes, *current_task);
   Scheduler& scheduler = world_.scheduler();
   scheduler.point({.kind = OperationKind::thread_create});
   const ProcessId process = current_task->process;
   Task& task =
       scheduler.create_task(process, fmt::format("thread-{}", world_.next_thread_number(process)), {});
-  task.detached = detached;
+  task.detached = wanted.detached;
+  scheduler.set_priority(task, wanted.priority, wanted.time_sharing);
   task.body = [&task, start, argument] { task.result = start(argument); };
   *thread = reinterpret_cast<pthread_t>(task.storage->thread_pointer());  // what pthread_self() says there
   return 0;

@@ -97,6 +97,9 @@ class World {
   /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
   void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
 
+  /// Which processors the simulated machine has; Cpu::many unless told otherwise.
+  void set_cpu(Cpu cpu) noexcept { scheduler_.set_cpu(cpu); }
+
   /// What `task` ("process/name") is blocked in, or nothing if it is not blocked.
   /// @return e.g. "sem_wait handoff"
   [[nodiscard]] std::string blocked_in(std::string_view task) const;

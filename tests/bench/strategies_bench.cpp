@@ -24,8 +24,8 @@ struct Measured {
 
 bool is_found(const ltsim::World& world, std::string_view finding) {
   const ltsim::Outcome& outcome = world.scheduler().outcome();
-  return !outcome.passed() && (fmt::format("{}: {}", to_string(outcome.kind), outcome.message).find(finding) !=
-                               std::string::npos);
+  return !outcome.passed() &&
+         (fmt::format("{}: {}", to_string(outcome.kind), outcome.message).find(finding) != std::string::npos);
 }
 
 std::uint64_t executions_until_found(ltsim::World& world, const ltsim::Scenario& scenario,
@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
   std::uint64_t executions = 20'000;
   ltsim::World world;
   const ltsim::SignalGuard signals;
-  fmt::print("{:<40} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "swarm", "random", "pct", "pos", "surw", "stall");
+  fmt::print("{:<40} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "swarm", "random", "pct", "pos", "surw",
+             "stall");
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--seeds") {
