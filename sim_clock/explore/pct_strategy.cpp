@@ -15,16 +15,7 @@ SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
   std::size_t change_points = 0;  // d - 1
   while (change_points < 5 && generator().below(3) != 0) ++change_points;
   change_points_.begin(generator(), change_points);
-  switch (generator().below(8)) {
-    case 0:
-      return TimeMode::calm;
-    case 1:
-      return TimeMode::bursts;
-    case 2:
-      return TimeMode::silence;
-    default:
-      return TimeMode::clock;
-  }
+  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
 void PctStrategy::learn(const ExecutionSummary& summary) noexcept {
@@ -45,6 +36,7 @@ bool PctStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
   bool first = true;
   for_each_task(choice.runnable,
                 [&](TaskId task) { first = first && priority_of(clock) > priority_of(task); });
+  if (first && change_points_.pass() != 0) lower(clock);
   return first;
 }
 

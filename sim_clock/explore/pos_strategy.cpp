@@ -9,16 +9,7 @@ namespace ltsim {
 SamplingStrategy::TimeMode PosStrategy::begin() noexcept {
   priorities_.fill(0);
   tasks_seen_ = 0;
-  switch (generator().below(8)) {
-    case 0:
-      return TimeMode::calm;
-    case 1:
-      return TimeMode::bursts;
-    case 2:
-      return TimeMode::silence;
-    default:
-      return TimeMode::clock;
-  }
+  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
 std::size_t PosStrategy::choose_task(const TaskChoice& choice) noexcept {
@@ -49,7 +40,8 @@ void PosStrategy::performs(TaskId task, const Operation& operation) noexcept {
 
 std::uint64_t PosStrategy::priority_of(std::size_t task) noexcept {
   if (priorities_[task] == 0) {
-    priorities_[task] = std::max(generator().next(), lowest + 1);
+    const bool is_free = task != clock && pending_[task].kind == OperationKind::clock_read;
+    priorities_[task] = is_free ? highest : std::clamp(generator().next(), lowest + 1, highest - 1);
     if (task != clock) tasks_seen_ = std::max(tasks_seen_, task + 1);
   }
   return priorities_[task];

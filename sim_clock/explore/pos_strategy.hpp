@@ -4,11 +4,13 @@
 // Source: Yuan, Yang, Gu, "Partial order aware concurrency sampling", CAV 2018. Operations that nothing depends
 // on are not drawn again and again, so the sample is close to uniform over partial orders rather than over
 // interleavings. The clock takes part with an operation of its own, "to the next timer": one that meets a low
-// priority elsewhere passes it many times in a row, which is how a peer is slow for several time-outs. The
-// operation of a task that yields or polls has the lowest priority.
+// priority elsewhere passes it many times in a row, which is how a peer is slow for several time-outs. Reading
+// a clock conflicts with nothing and runs at once; the operation of a task that yields or polls has the lowest
+// priority.
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "sim_clock/explore/sampling_strategy.hpp"
 
@@ -29,6 +31,7 @@ class PosStrategy final : public SamplingStrategy {
 
   static constexpr std::size_t clock = tasks_max;  // its place among the priorities
   static constexpr std::uint64_t lowest = 1;
+  static constexpr std::uint64_t highest = std::numeric_limits<std::uint64_t>::max();
 
   std::array<std::uint64_t, tasks_max + 1> priorities_{};  // of the pending operation; 0: none drawn yet
   std::size_t tasks_seen_ = 0;                             // all have smaller numbers

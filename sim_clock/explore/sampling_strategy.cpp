@@ -21,21 +21,20 @@ void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
-  slow_moments_.learn();
+  if (slow_moments_.passed() != 0) slow_moments_.learn();
   for (Occasions& fault : faults_) {
     if (fault.passed() != 0) fault.learn();
   }
 }
 
 SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
-  const bool is_place = slow_moments_.pass() != 0;
+  if (choice.until_next_timer != VirtualClock::never) period_ = std::max(choice.until_next_timer, SimTime{1});
   switch (time_mode_) {
-    case TimeMode::calm:
-      return {};
     case TimeMode::bursts:
-      return generator_.bits(burst_bits_) == 0 ? draw_slow_moment(choice.until_next_timer) : SlowMoment{};
+      return generator_.bits(burst_bits_) == 0 ? draw_slow_moment() : SlowMoment{};
     case TimeMode::silence:
-      return is_place ? draw_slow_moment(choice.until_next_timer) : SlowMoment{};
+      if (!acts_on_something(choice.pending[choice.running]) || slow_moments_.pass() == 0) return {};
+      return draw_slow_moment();
     case TimeMode::clock:
       if (choice.until_next_timer > longest_silence || !clock_goes_first(choice)) return {};
       return {.duration = std::max(choice.until_next_timer, SimTime{1})};
@@ -43,22 +42,17 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
   return {};
 }
 
-SlowMoment SamplingStrategy::draw_slow_moment(SimTime until_next_timer) noexcept {
-  SlowMoment moment;
-  moment.others_go_on = generator_.below(2) == 1;
-  const bool a_timer_is_near = until_next_timer <= longest_silence;
-  if (a_timer_is_near && generator_.below(2) == 0) {
-    // Just past the n-th multiple, n = 1 in one case of two, 2 to 3 in one of four ...
-    std::uint32_t multiple = 1;
-    while (multiple < 64 && generator_.bits(1) == 1) multiple *= 2;
-    multiple += generator_.below(multiple);
-    moment.duration = std::min(std::max(until_next_timer, SimTime{1}) * multiple, longest_silence);
-  } else {
-    const std::uint32_t order = generator_.below(orders_of_magnitude + 1);
-    const SimTime least = shortest_slow_moment * (std::int64_t{1} << order);
-    moment.duration = least + least / 8 * generator_.below(8);
+SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
+  if (period_ != SimTime{0} && period_ <= longest_silence && generator_.below(4) != 0) {
+    // 1, 2 to 3, 4 to 7, 8 to 15: as often each.
+    const std::uint32_t order = generator_.below(4);
+    const std::uint32_t multiple = (std::uint32_t{1} << order) + generator_.below(std::uint32_t{1} << order);
+    const bool others_go_on = multiple > 1 || generator_.below(2) == 1;
+    return {.duration = std::min(period_ * multiple, longest_silence), .others_go_on = others_go_on};
   }
-  return moment;
+  const std::uint32_t order = generator_.below(orders_of_magnitude + 1);
+  const SimTime least = shortest_slow_moment * (std::int64_t{1} << order);
+  return {.duration = least + least / 8 * generator_.below(8), .others_go_on = generator_.below(2) == 1};
 }
 
 std::size_t SamplingStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {

@@ -2,13 +2,13 @@
 // and answer questions. They differ in how they choose tasks.
 //
 // Time. In each execution it passes in one of these ways while somebody could run:
-//   calm     never;
 //   bursts   with the same probability, 2^-3 to 2^-13, at each point: the machine, or the one task at hand;
-//   silence  one to three times, each at a place drawn uniformly from the whole execution;
+//   silence  one to three times, each before an operation drawn uniformly from those of the whole execution
+//            that act on something in particular;
 //   clock    the clock takes part like a task: it "runs" by going on to the next timer, when the strategy
 //            chooses it (clock_goes_first()).
-// A slow moment lasts until the next timer, or for a time drawn log-uniformly from 1 us to 2 s, or for a
-// multiple of the time to the next timer: time-outs come in multiples. Nobody who could run is held
+// A slow moment lasts for a time drawn log-uniformly from 1 us to 2 s, or for a multiple of the time to the next
+// timer, or of the last such time known: an answer that is five time-outs late is one decision. Nobody who could run is held
 // up for more than 16 s at a time: that is no slow machine any more.
 //
 // Faults. Of the kinds that are granted, each is on in every second execution, and then strikes at places
@@ -32,7 +32,7 @@ class SamplingStrategy : public Strategy {
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept final;
 
  protected:
-  enum class TimeMode : std::uint8_t { calm, bursts, silence, clock };
+  enum class TimeMode : std::uint8_t { bursts, silence, clock };
 
   /// Draws what the kind of strategy needs for an execution. @return how time passes in it
   virtual TimeMode begin() noexcept = 0;
@@ -42,10 +42,11 @@ class SamplingStrategy : public Strategy {
   [[nodiscard]] RandomGenerator& generator() noexcept { return generator_; }
 
  private:
-  [[nodiscard]] SlowMoment draw_slow_moment(SimTime until_next_timer) noexcept;
+  [[nodiscard]] SlowMoment draw_slow_moment() noexcept;
 
   RandomGenerator generator_{0};
-  TimeMode time_mode_ = TimeMode::calm;
+  TimeMode time_mode_ = TimeMode::bursts;
+  SimTime period_{0};        // the last time to the next timer that was seen, in any execution; 0: none yet
   unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
   Occasions slow_moments_;
   std::array<Occasions, fault_kinds_count> faults_;

@@ -9,14 +9,7 @@ namespace ltsim {
 SamplingStrategy::TimeMode StallStrategy::begin() noexcept {
   events_left_ = 0;
   silences_.begin(generator(), 1 + generator().below(3));
-  switch (generator().below(4)) {
-    case 0:
-      return TimeMode::silence;
-    case 1:
-      return TimeMode::bursts;
-    default:
-      return TimeMode::clock;
-  }
+  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
 void StallStrategy::learn(const ExecutionSummary& summary) noexcept {

@@ -24,14 +24,7 @@ SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
     passed_[everything][task] = 0;
   }
   next_ = draw_next();
-  switch (generator().below(4)) {
-    case 0:
-      return TimeMode::calm;
-    case 1:
-      return TimeMode::silence;
-    default:
-      return TimeMode::bursts;
-  }
+  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::bursts;
 }
 
 std::size_t SurwStrategy::draw_interesting() noexcept {
