@@ -21,7 +21,12 @@ std::size_t RecordingStrategy::strike(FaultKind kind, std::size_t variants_count
   deviation.kind = Deviation::Kind::fault;
   deviation.anchor = anchors_.anchor();
   deviation.fault = kind;
-  deviation.answer = variant;
+  if (kind == FaultKind::crash) {
+    deviation.process = world_.process_name(world_.faults().crash_candidate(variant));
+    make_one_word(deviation.process);
+  } else {
+    deviation.answer = variant;
+  }
   deviations_.push_back(std::move(deviation));
   return variant;
 }

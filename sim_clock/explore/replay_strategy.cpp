@@ -34,9 +34,21 @@ std::size_t ReplayStrategy::choose_task(const TaskChoice& choice) noexcept {
 
 std::size_t ReplayStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {
   Entry* const entry = entry_here(Deviation::Kind::fault, kind);
-  if (entry == nullptr || entry->deviation->answer > variants_count) return 0;
+  if (entry == nullptr) return 0;
+  const std::size_t variant = kind == FaultKind::crash ? crash_of(entry->deviation->process, variants_count)
+                                                       : entry->deviation->answer;
+  if (variant == 0 || variant > variants_count) return 0;
   entry->carried_out = true;
-  return entry->deviation->answer;
+  return variant;
+}
+
+std::size_t ReplayStrategy::crash_of(std::string_view process, std::size_t variants_count) const {
+  for (std::size_t variant = 1; variant <= variants_count; ++variant) {
+    std::string name = world_.process_name(world_.faults().crash_candidate(variant));
+    make_one_word(name);
+    if (name == process) return variant;
+  }
+  return 0;
 }
 
 std::size_t ReplayStrategy::answer(std::size_t count) noexcept {
@@ -62,8 +74,9 @@ std::optional<ReplayStrategy::Divergence> ReplayStrategy::divergence() const {
     const std::string_view reason =
         !entry.reached                                          ? "the execution never came to this place"
         : entry.deviation->kind == Deviation::Kind::switch_task ? "the task cannot run there"
-        : entry.deviation->kind == Deviation::Kind::fault       ? "the fault cannot strike there so"
-                                                                : "there is no such answer";
+        : entry.deviation->kind != Deviation::Kind::fault       ? "there is no such answer"
+        : entry.deviation->fault == FaultKind::crash            ? "the process does not run there"
+                                                                : "the fault cannot strike there so";
     return Divergence{.deviation = entry.deviation, .reason = std::string{reason}};
   }
   return std::nullopt;

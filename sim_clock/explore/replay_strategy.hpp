@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -44,6 +45,9 @@ class ReplayStrategy final : public Strategy {
 
   /// @param fault  which one, if the kind is `fault`
   [[nodiscard]] Entry* entry_here(Deviation::Kind kind, FaultKind fault = FaultKind::crash) noexcept;
+
+  /// @return  the variant that kills that process; 0: it cannot be killed here
+  [[nodiscard]] std::size_t crash_of(std::string_view process, std::size_t variants_count) const;
 
   const World& world_;
   const AnchorTracker& anchors_;

@@ -99,12 +99,19 @@ tl::expected<Deviation, std::string> parse_deviation(const std::vector<std::stri
     anchor_end = words.size() < 3 ? 0 : words.size() - 2;
     const auto fault = anchor_end == 0 ? std::nullopt : parse_fault_kind(words[anchor_end]);
     const auto variant = parse_number(words.back());
-    if (!fault || !variant || *variant == 0) {
+    if (!fault || *fault == FaultKind::crash || !variant || *variant == 0) {
       return tl::unexpected<std::string>(
           "a fault line ends with the kind of fault and the number, from 1, of the way in which it strikes");
     }
     deviation.fault = *fault;
     deviation.answer = *variant;
+  } else if (kind == "crash") {
+    deviation.kind = Deviation::Kind::fault;
+    anchor_end = words.size() < 2 ? 0 : words.size() - 2;
+    if (anchor_end == 0 || words[anchor_end] != "of") {
+      return tl::unexpected<std::string>("a crash line is: crash TASK before OPERATION OBJECT #N of PROCESS");
+    }
+    deviation.process = words.back();
   } else {
     deviation.kind = Deviation::Kind::choose;
     const auto answer = parse_number(words.back());
@@ -135,6 +142,8 @@ std::string to_string(const Deviation& deviation) {
     case Deviation::Kind::stall:
       return fmt::format("stall     {} +{}", place, to_text(deviation.passes));
     case Deviation::Kind::fault:
+      if (deviation.fault == FaultKind::crash)
+        return fmt::format("crash     {} of {}", place, deviation.process);
       return fmt::format("fault     {} {} {}", place, to_string(deviation.fault), deviation.answer);
     case Deviation::Kind::choose:
       return fmt::format("choose    {} {}", place, deviation.answer);
@@ -191,7 +200,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
                              ? ""
                              : rest.substr(std::min(rest.find_first_not_of(' ', colon + 1), rest.size()));
     } else if (words.front() == "switch" || words.front() == "time" || words.front() == "stall" ||
-               words.front() == "fault" || words.front() == "choose") {
+               words.front() == "fault" || words.front() == "crash" || words.front() == "choose") {
       auto deviation = parse_deviation(words);
       if (!deviation) return error(std::move(deviation.error()));
       deviation->line = number;
@@ -199,7 +208,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     } else {
       return error(
           fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, outcome, switch, "
-                      "time, stall, fault, choose",
+                      "time, stall, fault, crash, choose",
                       words.front()));
     }
   }

@@ -8,13 +8,14 @@
 //   time      kernel/main    before clock_read - #2                 +20ms
 //   stall     emulator/main  before atomic_store segment.state #1   +150ms
 //   fault     kernel/main    before sem_post handoff #2             lost-post 1
+//   crash     kernel/main    before sem_post handoff #3             of emulator
 //   choose    kernel/main    asks delay #1                          3
 //
 // The default: the running task goes on until it blocks, then the task with the lowest number that can run; a
 // task that yields lets the next one run; time passes only when nobody can run; the scenario's questions are
 // answered with 0; no fault strikes. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
 // task itself and lets the others go on. A "fault" line ends with the kind of fault and with the number, from
-// 1, of the way in which it strikes.
+// 1, of the way in which it strikes; a "crash" line with the process that is killed there.
 //
 // A line is anchored to the step at which its choice was made, by names and not by step numbers: which task,
 // before ("before") or blocked in ("in") which operation on which object, for the how-many-eth time of that
@@ -44,13 +45,15 @@ struct Deviation {
   std::string to_task;                 ///< switch_task: "emulator/main"
   SimTime passes{0};                   ///< pass_time, stall
   FaultKind fault = FaultKind::crash;  ///< fault
-  std::size_t answer = 0;              ///< choose; fault: in which of its ways it strikes, from 1
+  std::string process;                 ///< fault: of a crash, who is killed
+  std::size_t answer = 0;              ///< choose; fault, but for a crash: in which of its ways, from 1
   std::size_t line = 0;                ///< where it stands in its file, from 1; 0: not from a file
 
   /// Equal as choices: the line does not matter.
   bool operator==(const Deviation& other) const noexcept {
     return kind == other.kind && anchor == other.anchor && to_task == other.to_task &&
-           passes == other.passes && fault == other.fault && answer == other.answer;
+           passes == other.passes && fault == other.fault && process == other.process &&
+           answer == other.answer;
   }
 };
 

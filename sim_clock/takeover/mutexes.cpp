@@ -63,6 +63,12 @@ extern "C" int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
   return LTSIM_NEXT(pthread_mutex_unlock)(mutex);
 }
 
+extern "C" int pthread_mutex_consistent(pthread_mutex_t* mutex) noexcept {
+  if (current_task != nullptr) return current_task->world->mutexes().consistent(mutex);
+  if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;
+  return LTSIM_NEXT(pthread_mutex_consistent)(mutex);
+}
+
 extern "C" int pthread_mutex_destroy(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().destroy(mutex);
   if (ltsim::Mutexes::belongs_to_an_execution(mutex)) return 0;

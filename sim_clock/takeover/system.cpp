@@ -60,7 +60,9 @@ long futex(std::uint32_t* word, int operation, std::uint32_t value, const timesp
 
 extern "C" pid_t getpid() noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(getpid)();
-  return first_process_id + current_task->process;
+  // A process that was started again is another one.
+  const unsigned life = current_task->world->incarnation(current_task->process);
+  return first_process_id + current_task->process + static_cast<pid_t>((life - 1) * ltsim::processes_max);
 }
 
 extern "C" pid_t gettid() noexcept {

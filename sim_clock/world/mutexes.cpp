@@ -17,12 +17,21 @@ struct Mutexes::State {
   std::uint64_t execution;       // in which the fields around it are valid
   std::int32_t kind;
   ObjectId object;
-  std::uint64_t unused[2];
+  enum class Health : std::uint32_t {
+    sound,
+    owner_died,       // the next who locks it is told
+    inconsistent,     // locked by one who was told
+    not_recoverable,  // who was told unlocked it without pthread_mutex_consistent()
+  } health;
+  std::uint32_t unused[3];
 };
 
 namespace {
 
 constexpr std::int32_t kind_mask = 3;  // glibc keeps robustness, sharing and protocol in higher bits
+
+/// nptl/pthreadP.h, PTHREAD_MUTEX_ROBUST_NORMAL_NP.
+constexpr bool is_robust(std::int32_t kind) noexcept { return (kind & 16) != 0; }
 
 Operation operation_on(OperationKind kind, ObjectId object = 0) noexcept {
   return {.kind = kind, .object = object};
@@ -52,7 +61,10 @@ WaitKey condition_key(const pthread_cond_t* condition) noexcept {
 
 }  // namespace
 
-void Mutexes::reset() noexcept { mutexes_count_ = 0; }
+void Mutexes::reset() noexcept {
+  mutexes_count_ = 0;
+  robust_held_.clear();
+}
 
 Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
   static_assert(sizeof(State) == sizeof(pthread_mutex_t));
@@ -61,6 +73,7 @@ Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
   if (state.execution != world_.execution_number()) {
     state.owner_plus_one = 0;
     state.locked_count = 0;
+    state.health = State::Health::sound;
     state.execution = world_.execution_number();
     const GhostScope ghost;
     state.object = world_.objects().add(fmt::format("mutex-{}", ++mutexes_count_));
@@ -87,9 +100,7 @@ int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
     return 0;
   }
   if (state.owner_plus_one != 0) return EBUSY;
-  state.owner_plus_one = self;
-  state.locked_count = 1;
-  return 0;
+  return take(state, mutex);
 }
 
 int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept {
@@ -107,11 +118,20 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimT
       return ETIMEDOUT;
     }
   }
-  state.owner_plus_one = self;
+  return take(state, address);
+}
+
+int Mutexes::take(State& state, const void* address) noexcept {
+  if (state.health == State::Health::not_recoverable) return ENOTRECOVERABLE;
+  state.owner_plus_one = current_task->id + 1U;
   state.locked_count = 1;
   if (inherits_priority(state.kind))
     world_.scheduler().end_lending(mutex_key(address, state.kind), current_task);
-  return 0;
+  if (!is_robust(state.kind)) return 0;
+  robust_held_.push_back({.state = &state, .address = address, .owner = current_task->id});
+  if (state.health == State::Health::sound) return 0;
+  state.health = State::Health::inconsistent;
+  return EOWNERDEAD;
 }
 
 Scheduler::Wake Mutexes::wait_for_owner(const State& state, const void* address, SimTime deadline) noexcept {
@@ -138,7 +158,7 @@ int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
 
 int Mutexes::check_owner(const State& state) noexcept {
   if (state.owner_plus_one == current_task->id + 1U) return 0;
-  if ((state.kind & kind_mask) != PTHREAD_MUTEX_NORMAL) return EPERM;
+  if ((state.kind & kind_mask) != PTHREAD_MUTEX_NORMAL || is_robust(state.kind)) return EPERM;
   const std::string& task = current_task->name;
   const GhostScope ghost;
   world_.scheduler().fail(OutcomeKind::assertion,
@@ -149,6 +169,14 @@ int Mutexes::check_owner(const State& state) noexcept {
 
 bool Mutexes::belongs_to_an_execution(const pthread_mutex_t* mutex) noexcept {
   return World::is_execution_number(reinterpret_cast<const State*>(mutex)->execution);
+}
+
+int Mutexes::consistent(pthread_mutex_t* mutex) noexcept {
+  State& state = resolve(mutex);
+  if (state.health != State::Health::inconsistent || state.owner_plus_one != current_task->id + 1U)
+    return EINVAL;
+  state.health = State::Health::sound;
+  return 0;
 }
 
 int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
@@ -167,7 +195,36 @@ void Mutexes::release(State& state, const void* address) noexcept {
     scheduler.end_lending(key, nullptr);
     scheduler.update_priority(*current_task);
   }
-  scheduler.wake(key, 1);
+  std::size_t woken_max = 1;
+  if (is_robust(state.kind)) {
+    // The state may be reached at another address than it was locked at: another mapping of the process.
+    std::erase_if(robust_held_, [&](const RobustHeld& held) {
+      return held.owner == current_task->id && Segments::canonical(held.state) == Segments::canonical(&state);
+    });
+    if (state.health == State::Health::inconsistent) {
+      state.health = State::Health::not_recoverable;
+      woken_max = tasks_max;  // none of them will have it
+    }
+  }
+  scheduler.wake(key, woken_max);
+}
+
+void Mutexes::release_robust_of(TaskId owner) noexcept {
+  for (std::size_t i = 0; i < robust_held_.size();) {
+    const RobustHeld held = robust_held_[i];
+    if (held.owner != owner) {
+      ++i;
+      continue;
+    }
+    robust_held_.erase(robust_held_.begin() + static_cast<std::ptrdiff_t>(i));
+    State& state = *held.state;
+    // Somebody may have made something else of the memory meanwhile.
+    if (state.execution != world_.execution_number() || state.owner_plus_one != owner + 1U) continue;
+    state.owner_plus_one = 0;
+    state.locked_count = 0;
+    state.health = State::Health::owner_died;
+    world_.scheduler().wake(mutex_key(held.address, state.kind), 1);
+  }
 }
 
 int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {
@@ -190,8 +247,11 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   while (state.owner_plus_one != 0 && state.owner_plus_one != self) {
     wait_for_owner(state, mutex, VirtualClock::never);
   }
-  state.owner_plus_one = self;
-  ++state.locked_count;
+  if (state.owner_plus_one == self) {
+    ++state.locked_count;  // a recursive one that stayed locked
+  } else if (const int error = take(state, mutex); error != 0) {
+    return error;
+  }
   return wake == Scheduler::Wake::timed_out ? ETIMEDOUT : 0;
 }
 

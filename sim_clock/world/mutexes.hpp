@@ -5,10 +5,10 @@
 // error-checking) stays where pthread_mutex_init put it. Conditions hold no state: their waiters are known by
 // the address.
 //
-// PTHREAD_PRIO_INHERIT has its effect on Cpu::one_fifo.
+// PTHREAD_PRIO_INHERIT has its effect on Cpu::one_fifo. A robust mutex whose owner ends or is killed goes to the
+// next who locks it, with EOWNERDEAD.
 //
-// Not here: robust mutexes whose owner dies (no simulated process dies yet), PTHREAD_PRIO_PROTECT (accepted,
-// without effect).
+// Not here: PTHREAD_PRIO_PROTECT (accepted, without effect).
 #pragma once
 
 #include <pthread.h>
@@ -16,10 +16,12 @@
 #include <cstdint>
 #include <ctime>
 #include <string>
+#include <vector>
 
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/world/operation.hpp"
 #include "sim_clock/world/scheduler.hpp"
+#include "sim_clock/world/task.hpp"
 
 namespace ltsim {
 
@@ -35,6 +37,7 @@ class Mutexes {
   int try_lock(pthread_mutex_t* mutex) noexcept;
   int timed_lock(pthread_mutex_t* mutex, SimTime deadline) noexcept;
   int unlock(pthread_mutex_t* mutex) noexcept;
+  int consistent(pthread_mutex_t* mutex) noexcept;
   int destroy(pthread_mutex_t* mutex) noexcept;
 
   int wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept;
@@ -44,6 +47,12 @@ class Mutexes {
 
   /// An exception of `initialise` passes through; then the next one may try.
   int once(pthread_once_t* control, void (*initialise)());
+
+  /// The task has ended or was killed: what it holds and is robust goes to the next.
+  void owner_died(TaskId owner) noexcept {
+    if (!robust_held_.empty()) [[unlikely]]
+      release_robust_of(owner);
+  }
 
   /// Whether a task of some execution has used this mutex: outside any task it is nobody's then.
   [[nodiscard]] static bool belongs_to_an_execution(const pthread_mutex_t* mutex) noexcept;
@@ -67,8 +76,19 @@ class Mutexes {
   /// assertion.
   int check_owner(const State& state) noexcept;
   void release(State& state, const void* address) noexcept;
+  /// The running task becomes the owner of a mutex that is free.
+  /// @return 0, or EOWNERDEAD if the last owner died
+  int take(State& state, const void* address) noexcept;
+  void release_robust_of(TaskId owner) noexcept;
+
+  struct RobustHeld {
+    State* state;
+    const void* address;
+    TaskId owner;
+  };
 
   World& world_;
+  std::vector<RobustHeld> robust_held_;  // in the order in which they were locked
   std::uint32_t mutexes_count_ = 0;
 };
 

@@ -32,6 +32,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   }
   tasks_count_ = 0;
   unfinished_count_ = 0;
+  unfinished_in_.fill(0);
   points_ = 0;
   points_max_ = points_max_default;
   decisions_ = 0;
@@ -56,7 +57,11 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
     tasks_.back()->storage = std::make_unique<TaskStorage>();
   }
   Task& task = *tasks_[tasks_count_];
-  task.name.assign(world_.process_name(process)).append("/").append(name);
+  task.name.assign(world_.process_name(process));
+  // Names do not repeat within an execution: the tasks of a process that was started again are others.
+  const unsigned incarnation = world_.incarnation(process);
+  if (incarnation != 1) task.name.append("@").append(std::to_string(incarnation));
+  task.name.append("/").append(name);
   make_one_word(task.name);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     if (tasks_[i]->name != task.name) continue;
@@ -85,6 +90,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.context.prepare(task.storage->stack_top(), TaskStorage::stack_bytes, task.storage->thread_pointer(),
                        &run_task, &task);
   ++unfinished_count_;
+  ++unfinished_in_[process];
   make_runnable(task);
   return task;
 }
@@ -129,16 +135,12 @@ void Scheduler::finish_running() noexcept {
   self.state = Task::State::finished;
   make_unrunnable(self);
   --unfinished_count_;
+  --unfinished_in_[self.process];
   if (listener_ != nullptr) listener_->ends(self);
   mix(std::uint64_t{self.id} << 32U | 0xffU);
+  world_.mutexes().owner_died(self.id);
   wake(World::join_key(self.id), tasks_max);
-  Task* const next = next_after_stop();
-  if (next != nullptr) {
-    switch_to(*next);
-  } else {
-    running_ = nullptr;
-    Context::switch_between(self.context, main_context_);
-  }
+  leave(self);
   LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
@@ -155,6 +157,10 @@ void Scheduler::point(Operation operation) noexcept {
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, operation);
   if (clock_.next_deadline() <= clock_.now()) wake_due();
+  if (world_.faults().crash_is_possible()) [[unlikely]] {
+    world_.faults().choose_crash();
+    if (self.state == Task::State::killed) leave_killed();
+  }
   const bool give_way = gives_way(self, operation);
   if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
   if (runnable_count_ > 1) {
@@ -239,6 +245,56 @@ std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept
   LTSIM_CHECK(chosen < count);
   mix(chosen);
   return chosen;
+}
+
+std::size_t Scheduler::strike(FaultKind kind, std::size_t variants_count) noexcept {
+  if (in_fair_tail()) return 0;
+  ++decisions_;
+  const std::size_t variant = strategy_->strike(kind, variants_count);
+  LTSIM_CHECK(variant <= variants_count);
+  if (variant != 0) mix(std::uint64_t{static_cast<std::uint8_t>(kind)} << 32U | variant);
+  return variant;
+}
+
+void Scheduler::kill_tasks(ProcessId process) noexcept {
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    Task& task = *tasks_[i];
+    if (task.process != process || task.state == Task::State::finished || task.state == Task::State::killed)
+      continue;
+    if (task.state == Task::State::runnable) make_unrunnable(task);
+    if (task.state == Task::State::stalled) --stalled_count_;
+    clock_.cancel(task.id);
+    task.state = Task::State::killed;
+    --unfinished_count_;
+    --unfinished_in_[process];
+  }
+  // Only now: a task of this process must not be woken.
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    if (tasks_[i]->process == process) world_.mutexes().owner_died(tasks_[i]->id);
+  }
+}
+
+void Scheduler::leave_killed() noexcept {
+  Task& self = *running_;
+  leave(self);
+  LTSIM_UNREACHABLE("a killed task was resumed");
+}
+
+void Scheduler::leave(Task& self) noexcept {
+  Task* const next = next_after_stop();
+  if (next != nullptr) {
+    switch_to(*next);
+  } else {
+    running_ = nullptr;
+    Context::switch_between(self.context, main_context_);
+  }
+}
+
+void Scheduler::delay_start(Task& task, SimTime begin) noexcept {
+  make_unrunnable(task);
+  task.state = Task::State::stalled;
+  ++stalled_count_;
+  clock_.arm(begin, task.id);
 }
 
 void Scheduler::fail(OutcomeKind kind, std::string message) {

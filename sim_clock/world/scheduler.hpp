@@ -63,6 +63,21 @@ class Scheduler {
   /// Whether tasks were made and never run.
   [[nodiscard]] bool run_is_missing() const noexcept { return tasks_count_ != 0 && !has_run_; }
 
+  // --- for faults ---
+
+  /// Asks whether a granted fault strikes: 0, it does not; otherwise 1 to variants_count. Never in the fair tail.
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept;
+  /// Stops every task of the process where it stands, for good, without unwinding anything. If the running
+  /// task is among them, it runs on until it calls leave_killed().
+  void kill_tasks(ProcessId process) noexcept;
+  /// For a running task that was killed: somebody else goes on. Does not return.
+  [[noreturn]] void leave_killed() noexcept;
+  /// The task, which has not run yet, gets no processor before `begin`.
+  void delay_start(Task& task, SimTime begin) noexcept;
+  [[nodiscard]] bool has_unfinished_tasks(ProcessId process) const noexcept {
+    return unfinished_in_[process] != 0;
+  }
+
   // --- for the running task ---
 
   /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
@@ -115,6 +130,8 @@ class Scheduler {
  private:
   static void run_task(void* task) noexcept;
   void finish_running() noexcept;
+  /// Goes from the running task, which will not run again, to the next, or back to run().
+  void leave(Task& self) noexcept;
   /// The next task after the running one stopped being runnable; null when all have finished.
   Task* next_after_stop() noexcept;
   void nobody_can_run() noexcept;
@@ -163,6 +180,7 @@ class Scheduler {
   std::vector<std::unique_ptr<Task>> tasks_;    // pooled; the first tasks_count_ belong to this execution
   std::size_t tasks_count_ = 0;
   std::size_t unfinished_count_ = 0;
+  std::array<std::uint16_t, processes_max> unfinished_in_{};  // by process
 
   std::uint64_t points_ = 0;
   std::uint64_t points_max_ = points_max_default;

@@ -90,8 +90,10 @@ int Segments::open(std::string_view path, int flags) noexcept {
   } else if ((flags & O_TRUNC) != 0) {
     segment->bytes = 0;
   }
-  descriptors_.push_back(
-      {.segment = index_of(*segment), .open = true, .writable = (flags & O_ACCMODE) != O_RDONLY});
+  descriptors_.push_back({.segment = index_of(*segment),
+                          .process = current_task->process,
+                          .open = true,
+                          .writable = (flags & O_ACCMODE) != O_RDONLY});
   return first_descriptor + static_cast<int>(descriptors_.size() - 1);
 }
 
@@ -206,6 +208,15 @@ int Segments::unmap(void* address, std::size_t bytes) noexcept {
   }
   window.mapped = false;
   return 0;
+}
+
+void Segments::process_died(ProcessId process) noexcept {
+  constexpr std::size_t windows_of_a_process = segments_max * mappings_max;
+  for (std::size_t i = 0; i < windows_of_a_process; ++i)
+    windows_[process * windows_of_a_process + i].mapped = false;
+  for (Descriptor& descriptor : descriptors_) {
+    if (descriptor.process == process) descriptor.open = false;
+  }
 }
 
 void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {

@@ -31,7 +31,7 @@ class Segments {
   static constexpr unsigned window_shift = 24;
   static constexpr std::size_t segment_bytes_max = std::size_t{1} << window_shift;  // 16 MiB
   static constexpr std::size_t segments_max = 8;  // in one execution, unlinked ones included
-  static constexpr std::size_t processes_max = 8;
+  static constexpr std::size_t processes_max = ltsim::processes_max;
   static constexpr std::size_t mappings_max = 4;  // of one segment in one process, at a time
   static constexpr std::size_t windows_count = processes_max * segments_max * mappings_max;
   /// Far below where Linux puts the program, its heap and its libraries, far above what is refused to user
@@ -64,6 +64,9 @@ class Segments {
   /// if the task's process has not mapped the address (any more), or not for writing, or if it lies behind
   /// the end of its segment; before the point, and again after it, for the mapping may have gone meanwhile.
   void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
+
+  /// The process is gone, and with it its mappings and descriptors. What is in the segments stays.
+  void process_died(ProcessId process) noexcept;
 
   /// What memory holds now where `operation` acts, as an unsigned number; of longer accesses the first eight
   /// bytes.
@@ -98,6 +101,7 @@ class Segments {
   }
   struct Descriptor {
     std::size_t segment;
+    ProcessId process;
     bool open = true;
     bool writable = false;
   };

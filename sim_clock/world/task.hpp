@@ -18,6 +18,9 @@ class World;
 
 using ProcessId = std::uint8_t;
 
+/// Most processes one world can hold.
+inline constexpr std::size_t processes_max = 8;
+
 /// What a blocked task waits for: a mutex, condition or futex word by its address, a semaphore by its number, a task to
 /// join by its number. The highest bits tell the kinds apart.
 using WaitKey = std::uint64_t;
@@ -26,9 +29,10 @@ struct Task {
   enum class State : std::uint8_t {
     runnable,
     blocked,
-    stalled,
-    finished
-  };  // stalled: gets no processor for a while
+    stalled,  ///< gets no processor for a while
+    finished,
+    killed,  ///< with its process
+  };
 
   World* world = nullptr;
   TaskId id = 0;

@@ -14,10 +14,54 @@ void Process::start(std::string_view name, std::function<void()> body) {
   world_.scheduler().create_task(id_, name, std::move(body));
 }
 
+void Process::may_crash(CrashGrant grant) { world_.faults().grant_crashes(id_, grant); }
+
+bool Process::is_running() const noexcept {
+  return world_.scheduler().has_unfinished_tasks(id_) && world_.now() >= begin_;
+}
+
+void Process::remember_tasks() {
+  starts_.clear();
+  for (std::size_t i = 0; i < world_.scheduler().tasks_count(); ++i) {
+    const Task& task = world_.scheduler().task(static_cast<TaskId>(i));
+    if (task.process == id_) starts_.push_back({task.name.substr(name_.size() + 1), task.body});
+  }
+}
+
+void Process::died(std::optional<SimTime> restart_after) {
+  ++crashes_;
+  if (!restart_after) return;
+  ++incarnation_;
+  threads_created_count_ = 0;
+  begin_ = world_.now() + *restart_after;
+  for (const Start& start : starts_) {
+    Task& task = world_.scheduler().create_task(id_, start.task, start.body);
+    world_.scheduler().delay_start(task, begin_);
+  }
+}
+
+void Process::reset() noexcept {
+  threads_created_count_ = 0;
+  incarnation_ = 1;
+  crashes_ = 0;
+  begin_ = SimTime{0};
+  starts_.clear();
+}
+
 namespace {
 
 bool a_world_exists = false;
 World* in_execution = nullptr;
+
+/// Whether the task is called so, in whichever life of its process: "emulator@2/main" is an "emulator/main".
+bool is_called(const Task& task, std::size_t process_name_length, std::string_view name) noexcept {
+  if (task.name == name) return true;
+  const std::string_view full = task.name;
+  const std::size_t slash = full.find('/', process_name_length);
+  return full[process_name_length] == '@' && slash != std::string_view::npos &&
+         name.starts_with(full.substr(0, process_name_length)) &&
+         name.substr(process_name_length) == full.substr(slash);
+}
 
 }  // namespace
 
@@ -60,7 +104,7 @@ Process& World::process(std::string_view name) {
   if (processes_[id] == nullptr || processes_[id]->name() != name) {
     processes_[id] = std::make_unique<Process>(*this, static_cast<ProcessId>(id), name);
   }
-  processes_[id]->threads_created_count_ = 0;
+  processes_[id]->reset();
   return *processes_[id];
 }
 
@@ -69,9 +113,10 @@ void World::require(bool holds, std::string_view message) {
 }
 
 std::string World::blocked_in(std::string_view task_name) const {
-  for (std::size_t i = 0; i < scheduler_.tasks_count(); ++i) {
+  for (std::size_t i = scheduler_.tasks_count(); i-- > 0;) {
     const Task& task = scheduler_.task(static_cast<TaskId>(i));
-    if (task.name != task_name || task.state != Task::State::blocked) continue;
+    if (!is_called(task, process_name(task.process).size(), task_name)) continue;
+    if (task.state != Task::State::blocked) return {};
     return fmt::format("{} {}", to_string(scheduler_.pending(task).kind),
                        objects_.name(scheduler_.pending(task)));
   }
@@ -88,6 +133,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   segments_.reset();
   semaphores_.reset();
   mutexes_.reset();
+  faults_.reset();
   processes_count_ = 0;
 }
 

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "sim_clock/check/outcome.hpp"
+#include "sim_clock/world/faults.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
 #include "sim_clock/world/scheduler.hpp"
@@ -41,15 +42,46 @@ class Process {
   /// @param name  unique within the process; shown as "process/name"
   void start(std::string_view name, std::function<void()> body);
 
+  /// Grants crashes: at any scheduling point of the world the process may be killed, as by kill -9.
+  /// With `restart_after` all that start() had made before World::run() begins again that much later, as new
+  /// tasks: "process@2/name". The bodies are copies made before the first run: what they capture by reference
+  /// is not fresh then.
+  void may_crash(CrashGrant grant);
+  /// Which life this is, from 1. Between a crash and the restart already the one to come.
+  [[nodiscard]] unsigned incarnation() const noexcept { return incarnation_; }
+  /// How often it was killed in this execution.
+  [[nodiscard]] unsigned crashes() const noexcept { return crashes_; }
+  /// Some task of it has not ended, and it is not dead or waiting to be started again.
+  [[nodiscard]] bool is_running() const noexcept;
+
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] ProcessId id() const noexcept { return id_; }
+
+  // --- for Faults ---
+
+  /// Keeps copies of the bodies of its tasks, which have not run yet.
+  void remember_tasks();
+  /// It was killed; nothing of it runs any more.
+  void died(std::optional<SimTime> restart_after);
 
  private:
   friend class World;
 
+  struct Start {
+    std::string task;  // without the process's name
+    std::function<void()> body;
+  };
+
+  void reset() noexcept;
+
   World& world_;
   ProcessId id_;
   std::string name_;
-  unsigned threads_created_count_ = 0;  // in this execution
+  unsigned threads_created_count_ = 0;  // in this execution and this life, as everything below
+  unsigned incarnation_ = 1;
+  unsigned crashes_ = 0;
+  SimTime begin_{0};           // of this life
+  std::vector<Start> starts_;  // only of a process that may start again
 };
 
 class World {
@@ -64,8 +96,14 @@ class World {
   /// The process of that name; the first call makes it. At most Segments::processes_max.
   Process& process(std::string_view name);
 
+  /// Grants a fault: it may strike up to `times` times, wherever it can. Not for crashes (Process::may_crash).
+  void grant(FaultKind kind, unsigned times) noexcept { faults_.grant(kind, times); }
+
   /// Runs all tasks until they have finished or the execution has failed.
-  void run() { scheduler_.run(); }
+  void run() {
+    if (faults_.crash_is_possible()) faults_.prepare_restarts();
+    scheduler_.run();
+  }
   /// Whether the execution has failed already: what a scenario checks after run() means nothing then.
   [[nodiscard]] bool failed() const noexcept { return !scheduler_.outcome().passed(); }
 
@@ -100,7 +138,8 @@ class World {
   /// Which processors the simulated machine has; Cpu::many unless told otherwise.
   void set_cpu(Cpu cpu) noexcept { scheduler_.set_cpu(cpu); }
 
-  /// What `task` ("process/name") is blocked in, or nothing if it is not blocked.
+  /// What `task` ("process/name") is blocked in, or nothing if it is not blocked. Of a process that was started
+  /// again it is the task of its latest life.
   /// @return e.g. "sem_wait handoff"
   [[nodiscard]] std::string blocked_in(std::string_view task) const;
 
@@ -136,6 +175,12 @@ class World {
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
+  [[nodiscard]] Faults& faults() noexcept { return faults_; }
+  [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
+
+  [[nodiscard]] std::size_t processes_count() const noexcept { return processes_count_; }
+  [[nodiscard]] Process& process(ProcessId id) noexcept { return *processes_[id]; }
+  [[nodiscard]] const Process& process(ProcessId id) const noexcept { return *processes_[id]; }
 
   /// Never the same twice in a program, and nothing that ordinary memory holds by chance.
   [[nodiscard]] std::uint64_t execution_number() const noexcept { return execution_number_; }
@@ -152,6 +197,7 @@ class World {
   [[nodiscard]] const std::string& process_name(ProcessId id) const noexcept {
     return processes_[id]->name();
   }
+  [[nodiscard]] unsigned incarnation(ProcessId id) const noexcept { return processes_[id]->incarnation(); }
 
   /// The code under test called something that this world does not simulate. Ends the execution.
   void unsupported(std::string what);
@@ -177,6 +223,7 @@ class World {
   Semaphores semaphores_{*this};
   Mutexes mutexes_{*this};
   Threads threads_{*this};
+  Faults faults_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;

@@ -22,6 +22,8 @@ switch    kernel/main      end                                          to emula
 time      kernel/main      before clock_read - #2                       +20ms
 stall     emulator/main    before atomic_store segment.state #1         +1500us
 choose    -                asks delay #1                                7
+fault     kernel/main      before sem_post handoff #2                   lost-post 1
+crash     kernel/main      before sem_post handoff #3                   of emulator
 )";
 
 TEST(Schedule, reads_every_kind_of_line) {
@@ -31,7 +33,7 @@ TEST(Schedule, reads_every_kind_of_line) {
   EXPECT_EQ(schedule->outcome, OutcomeKind::invariant);
   EXPECT_EQ(schedule->message, "I1: the answer to request 1 was delivered for request 2");
   const auto& lines = schedule->deviations;
-  ASSERT_EQ(lines.size(), 7U);
+  ASSERT_EQ(lines.size(), 9U);
   EXPECT_EQ(lines[0].anchor, "- start");
   EXPECT_EQ(lines[1].anchor, "kernel/main before atomic_load segment.state #3");
   EXPECT_EQ(lines[1].to_task, "emulator/main");
@@ -42,6 +44,13 @@ TEST(Schedule, reads_every_kind_of_line) {
   EXPECT_EQ(lines[5].passes, 1500us);
   EXPECT_EQ(lines[6].kind, Deviation::Kind::choose);
   EXPECT_EQ(lines[6].answer, 7U);
+  EXPECT_EQ(lines[7].kind, Deviation::Kind::fault);
+  EXPECT_EQ(lines[7].fault, FaultKind::lost_post);
+  EXPECT_EQ(lines[7].answer, 1U);
+  EXPECT_EQ(lines[8].kind, Deviation::Kind::fault);
+  EXPECT_EQ(lines[8].fault, FaultKind::crash);
+  EXPECT_EQ(lines[8].anchor, "kernel/main before sem_post handoff #3");
+  EXPECT_EQ(lines[8].process, "emulator");
 }
 
 TEST(Schedule, what_was_written_reads_back_equal) {
@@ -99,6 +108,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadSchedule{"negative_duration", HEAD "time a/b before read x #1 +-20ms\n", 3, "+20ms"},
         BadSchedule{"huge_duration", HEAD "stall a/b before read x #1 +9223372036854775807s\n", 3, "+20ms"},
         BadSchedule{"answer_is_no_number", HEAD "choose a/b asks x #1 many\n", 3, "number"},
+        BadSchedule{"crash_of_nobody", HEAD "crash a/b before read x #1\n", 3, "of PROCESS"},
+        BadSchedule{"crash_by_number", HEAD "fault a/b before read x #1 crash 1\n", 3, "kind of fault"},
         BadSchedule{"lone_word", HEAD "switch\n", 3, "switch TASK before"}),
     BadSchedule::name_of);
 

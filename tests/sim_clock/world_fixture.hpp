@@ -14,7 +14,7 @@
 namespace ltsim {
 
 /// The default everywhere: what a schedule without lines means.
-class DefaultStrategy final : public Strategy {
+class DefaultStrategy : public Strategy {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "default"; }
   void begin_execution(std::uint64_t /*seed*/) noexcept override {}
