@@ -15,6 +15,8 @@ std::uint64_t key_of(const Operation& operation) noexcept {
 }  // namespace
 
 SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
+  things_count_ = things_learned_count_;
+  tasks_seen_ = tasks_learned_;
   interesting_ = draw_interesting();
   left_sum_ = 0;
   for (std::size_t task = 0; task < tasks_seen_; ++task) {
@@ -60,6 +62,8 @@ void SurwStrategy::learn(const ExecutionSummary& summary) noexcept {
   };
   for (std::size_t thing = 0; thing < things_count_; ++thing) learn_one(thing);
   learn_one(everything);
+  things_learned_count_ = things_count_;
+  tasks_learned_ = tasks_seen_;
 }
 
 std::size_t SurwStrategy::choose_task(const TaskChoice& choice) noexcept {

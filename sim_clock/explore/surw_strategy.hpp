@@ -40,7 +40,10 @@ class SurwStrategy final : public SamplingStrategy {
 
   std::array<std::uint64_t, things_max> keys_{};
   std::size_t things_count_ = 0;
-  std::size_t tasks_seen_ = 0;                     // all have smaller numbers
+  std::size_t tasks_seen_ = 0;  // all have smaller numbers
+  // Of both, those of executions that count: one that is run again begins with no more.
+  std::size_t things_learned_count_ = 0;
+  std::size_t tasks_learned_ = 0;
   std::array<Counts, things_max + 1> passed_{};    // in this execution; the last: of everything
   std::array<Counts, things_max + 1> expected_{};  // in an execution
   Counts left_{};                                  // of interesting operations

@@ -1,0 +1,107 @@
+// What the known races are there to show: the default search finds each by its own finding, from every seed; its
+// schedule gives the same execution each time; and the corrected program is never accused.
+
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/swarm_strategy.hpp"
+#include "sim_clock/scenario/shape.hpp"
+
+namespace ltsim {
+
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+}  // namespace ltsim
+
+namespace {
+
+constexpr std::uint64_t seeds_count = 5;
+constexpr std::uint64_t executions_until_found_max = 40'000;
+/// Ten times what the search needed is asked of the corrected program, but not more than takes a moment.
+constexpr std::uint64_t silent_executions_max = 10'000;
+
+ltsim::World& world() {
+  static ltsim::World only;
+  return only;
+}
+
+ltsim::ExploreReport explore(std::string_view scenario, std::uint64_t seed, std::uint64_t executions) {
+  ltsim::SwarmStrategy strategy;
+  ltsim::ExploreOptions options;
+  options.seed = seed;
+  options.executions_max = executions;
+  try {
+    return ltsim::Explorer{world()}.explore(*ltsim::find_scenario(scenario), strategy, options);
+  } catch (const ltsim::Explorer::NotSimulable& error) {
+    throw std::runtime_error{error.message};  // GoogleTest shows what it says
+  }
+}
+
+class ShapeTest : public testing::TestWithParam<ltsim::Shape> {};
+
+TEST_P(ShapeTest, is_found_from_every_seed_and_its_corrected_program_is_silent) {
+  const ltsim::Shape& shape = GetParam();
+  std::uint64_t most_needed = 0;
+  for (std::uint64_t seed = 1; seed <= seeds_count; ++seed) {
+    const auto report = explore(shape.name, seed, executions_until_found_max);
+    ASSERT_FALSE(report.failures.empty()) << "seed " << seed;
+    const ltsim::Outcome& outcome = report.failures.front().outcome;
+    EXPECT_TRUE(shape.is_finding(outcome)) << to_string(outcome.kind) << ": " << outcome.message;
+    most_needed = std::max(most_needed, report.executions);
+  }
+  const auto silent = explore(shape.corrected_name, 1, std::min(10 * most_needed, silent_executions_max));
+  EXPECT_TRUE(silent.failures.empty()) << silent.failures.front().outcome.message << '\n'
+                                       << to_string(silent.failures.front().schedule);
+}
+
+TEST_P(ShapeTest, replays_to_the_same_trace_a_hundred_times) {
+  const auto report = explore(GetParam().name, 1, executions_until_found_max);
+  ASSERT_FALSE(report.failures.empty());
+  const ltsim::Failure& failure = report.failures.front();
+  // Through its text, as from a file.
+  const auto schedule = ltsim::parse_schedule(to_string(failure.schedule));
+  ASSERT_TRUE(schedule.has_value()) << schedule.error().reason;
+  const ltsim::Scenario& scenario = *ltsim::find_scenario(GetParam().name);
+  for (int i = 0; i < 100; ++i) {
+    const auto replayed = ltsim::Explorer{world()}.replay(scenario, *schedule, nullptr);
+    ASSERT_FALSE(replayed.divergence) << replayed.divergence->reason;
+    ASSERT_EQ(replayed.trace_hash, failure.trace_hash);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Zoo, ShapeTest, testing::ValuesIn(ltsim::shapes()), [](const auto& tested) {
+  std::string name{tested.param.name.substr(tested.param.name.find('/') + 1)};
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return name;
+});
+
+TEST(Shape, is_found_by_its_own_finding_only) {
+  const ltsim::Shape by_invariant{.name = {}, .corrected_name = {}, .facts = {.finding = "I1", .cure = {}}};
+  EXPECT_TRUE(by_invariant.is_finding({ltsim::OutcomeKind::invariant, "I1: foreign"}));
+  EXPECT_TRUE(by_invariant.is_finding({ltsim::OutcomeKind::invariant, "I1, I4: foreign"}));
+  EXPECT_FALSE(by_invariant.is_finding({ltsim::OutcomeKind::invariant, "I18: never ended"}));
+  EXPECT_FALSE(by_invariant.is_finding({ltsim::OutcomeKind::deadlock, "I1: foreign"}));
+  EXPECT_FALSE(by_invariant.is_finding({}));
+  const ltsim::Shape by_outcome{
+      .name = {}, .corrected_name = {}, .facts = {.finding = "deadlock", .cure = {}}};
+  EXPECT_TRUE(by_outcome.is_finding({ltsim::OutcomeKind::deadlock, "all wait"}));
+  EXPECT_FALSE(by_outcome.is_finding({ltsim::OutcomeKind::livelock, "no end"}));
+}
+
+TEST(Shapes, are_registered_in_pairs) {
+  ASSERT_GE(ltsim::shapes().size(), 30U);
+  for (const ltsim::Shape& shape : ltsim::shapes()) {
+    EXPECT_NE(ltsim::find_scenario(shape.name), nullptr) << shape.name;
+    EXPECT_NE(ltsim::find_scenario(shape.corrected_name), nullptr) << shape.name;
+    EXPECT_EQ(ltsim::find_shape(shape.name)->facts.cure, shape.facts.cure);
+  }
+  EXPECT_EQ(ltsim::find_shape("races/o01-lost-wake-up-corrected"), nullptr);
+}
+
+}  // namespace
