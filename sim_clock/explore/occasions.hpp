@@ -50,7 +50,8 @@ class Occasions {
   void learn() noexcept {
     constexpr std::uint64_t most = std::uint64_t{1} << 30U;
     const auto seen = static_cast<std::uint32_t>(std::min(passed_, most));
-    estimate_ = std::max({seen, estimate_ - estimate_ / 16, 1U});
+    estimate_ = std::max({seen, is_learned_ ? estimate_ - (estimate_ + 15) / 16 : 0, 1U});
+    is_learned_ = true;
   }
 
   /// Occasions to expect in an execution.
@@ -64,6 +65,7 @@ class Occasions {
   static constexpr std::uint32_t first_estimate = 64;
 
   std::uint32_t estimate_ = first_estimate;
+  bool is_learned_ = false;
   std::uint64_t passed_ = 0;
   std::array<std::uint64_t, places_max> places_{};
   std::size_t places_count_ = 0;

@@ -8,7 +8,9 @@ namespace ltsim {
 
 SamplingStrategy::TimeMode PosStrategy::begin() noexcept {
   priorities_.fill(0);
+  for (std::size_t task = 0; task < tasks_seen_; ++task) looks_[task].count = 0;
   tasks_seen_ = 0;
+  sleeps_are_free_ = generator().below(2) == 0;
   return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
@@ -27,22 +29,38 @@ bool PosStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
   bool first = true;
   for_each_task(choice.runnable,
                 [&](TaskId task) { first = first && priority_of(clock) > priority_of(task); });
-  if (first) priorities_[clock] = 0;
+  // Timers mostly fire in series, of a task that sleeps between looks or tries again: one decision for several.
+  if (first && generator().below(4) == 0) priorities_[clock] = 0;
   return first;
 }
 
 void PosStrategy::performs(TaskId task, const Operation& operation) noexcept {
+  if (is_memory_access(operation.kind) && !changes_memory(operation.kind)) {
+    Look& look = looks_[task];
+    look.count = look.operation == operation ? look.count + 1 : 1;
+    look.operation = operation;
+    look.priority = priorities_[task];
+  }
   priorities_[task] = 0;
   for (std::size_t other = 0; other < tasks_seen_; ++other) {
     if (priorities_[other] != 0 && depend(pending_[other], operation)) priorities_[other] = 0;
+    if (looks_[other].count != 0 && depend(looks_[other].operation, operation)) looks_[other].count = 0;
   }
 }
 
 std::uint64_t PosStrategy::priority_of(std::size_t task) noexcept {
-  if (priorities_[task] == 0) {
-    const bool is_free = task != clock && pending_[task].kind == OperationKind::clock_read;
-    priorities_[task] = is_free ? highest : std::clamp(generator().next(), lowest + 1, highest - 1);
-    if (task != clock) tasks_seen_ = std::max(tasks_seen_, task + 1);
+  if (priorities_[task] != 0) return priorities_[task];
+  priorities_[task] = std::clamp(generator().next(), lowest + 1, highest - 1);
+  if (task == clock) return priorities_[task];
+  tasks_seen_ = std::max(tasks_seen_, task + 1);
+  const Operation& operation = pending_[task];
+  const bool is_free = operation.kind == OperationKind::clock_read ||
+                       (operation.kind == OperationKind::sleep && sleeps_are_free_);
+  constexpr std::uint32_t looks_of_a_poll = 3;
+  if (is_free) {
+    priorities_[task] = highest;
+  } else if (looks_[task].count >= looks_of_a_poll && looks_[task].operation == operation) {
+    priorities_[task] = std::max(looks_[task].priority, lowest);
   }
   return priorities_[task];
 }

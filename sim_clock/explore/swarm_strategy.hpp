@@ -46,7 +46,8 @@ class SwarmStrategy final : public Strategy {
   PosStrategy pos_;
   SurwStrategy surw_;
   StallStrategy stall_;
-  std::array<SamplingStrategy*, members_count> members_{&pct_, &pct_, &pos_, &pos_, &surw_, &surw_, &random_, &stall_};
+  std::array<SamplingStrategy*, members_count> members_{&pct_,  &pct_,  &pos_,    &pos_,
+                                                        &surw_, &surw_, &random_, &stall_};
   std::array<std::uint32_t, members_count> yields_{};  // of late
   std::size_t drawn_ = 0;
   SamplingStrategy* current_ = &random_;
