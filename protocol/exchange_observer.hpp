@@ -34,6 +34,11 @@ class ExchangeObserver {
   virtual void executed(std::span<const std::byte> /*request*/) noexcept {}
   /// ANSWER: the slave is about to set the state word to "response"; these bytes are the answer.
   virtual void answered(std::span<const std::byte> /*response*/) noexcept {}
+  /// ANNOUNCE: the state word says that there is an answer.
+  virtual void announced() noexcept {}
+  /// ACCEPT: the master turns to the response area, having seen the state word say so (K1 = immediately:
+  /// without having looked).
+  virtual void accepted() noexcept {}
   /// DELIVER: the master returns these bytes to the kernel.
   virtual void delivered(std::span<const std::byte> /*response*/) noexcept {}
   /// OUTCOME: the request submitted last has ended for the kernel.

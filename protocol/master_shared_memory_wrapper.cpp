@@ -45,6 +45,7 @@ tl::expected<std::size_t, SharedMemoryError> MasterSharedMemoryWrapper::get_resp
     end_request(ExchangeOutcome::unknown);
     return 0;
   }
+  observer().accepted();
   const std::size_t length = read_area(layout().response, into);  // r2 r3
   if (waits && options().state_taken_back == PaperOptions::StateTakenBack::by_master)
     take_back_response();  // r4

@@ -37,6 +37,7 @@ void SlaveSharedMemoryWrapper::write_response(std::span<const std::byte> respons
   write_area(layout().response, sent);  // s5 s6
   observer().answered(sent);
   publish_response();  // s7
+  observer().announced();
   if (options().semaphore_after_answer == PaperOptions::SemaphoreAfterAnswer::reset)
     while (try_consume_semaphore()) {  // s8
     }

@@ -25,6 +25,8 @@ class Recorder final : public ExchangeObserver {
   void taken() noexcept override { note("taken"); }
   void executed(std::span<const std::byte> request) noexcept override { note("executed " + text(request)); }
   void answered(std::span<const std::byte> response) noexcept override { note("answered " + text(response)); }
+  void announced() noexcept override { note("announced"); }
+  void accepted() noexcept override { note("accepted"); }
   void delivered(std::span<const std::byte> response) noexcept override {
     note("delivered " + text(response));
   }
@@ -79,9 +81,10 @@ TEST_F(ExchangeEvents, come_in_the_order_of_the_steps) {
   ASSERT_TRUE(master_->write(bytes("ask")));
   serve("answer");
   read();
-  EXPECT_THAT(recorder_.events, ElementsAre("submitted ask, idle", "published, request", "taken, request",
-                                            "executed ask, request", "answered answer, request",
-                                            "delivered answer, idle", "ended ok, idle"));
+  EXPECT_THAT(recorder_.events,
+              ElementsAre("submitted ask, idle", "published, request", "taken, request",
+                          "executed ask, request", "answered answer, request", "announced, response",
+                          "accepted, response", "delivered answer, idle", "ended ok, idle"));
 }
 
 TEST_F(ExchangeEvents, of_a_request_without_an_answer_end_in_unknown) {
@@ -134,7 +137,7 @@ TEST_F(ExchangeEvents, tell_of_a_delivery_without_a_request) {  // K7, H26
   read();
   recorder_.events.clear();
   read();
-  EXPECT_THAT(recorder_.events, ElementsAre("delivered a, response"));
+  EXPECT_THAT(recorder_.events, ElementsAre("accepted, response", "delivered a, response"));
 }
 
 TEST_F(ExchangeEvents, of_a_request_that_is_too_long_are_none) {

@@ -4,10 +4,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace scenarios {
 namespace {
+
+using Use = AreaOwnership::Use;
 
 std::string hex(std::span<const std::byte> bytes) {
   std::string text;
@@ -16,75 +17,164 @@ std::string hex(std::span<const std::byte> bytes) {
   return text.empty() ? "nothing" : text;
 }
 
+std::string_view to_string(protocol::ExchangeOutcome outcome) noexcept {
+  switch (outcome) {
+    case protocol::ExchangeOutcome::ok:
+      return "ok";
+    case protocol::ExchangeOutcome::rejected:
+      return "rejected";
+    case protocol::ExchangeOutcome::not_executed:
+      return "not executed";
+    case protocol::ExchangeOutcome::unknown:
+      return "unknown";
+  }
+  return "";
+}
+
 }  // namespace
 
-ExchangeMonitor::ExchangeMonitor(ltsim::World& world, std::string slave_task, Repeatable repeatable)
-    : world_(world), slave_task_(std::move(slave_task)), repeatable_(repeatable) {
+ExchangeMonitor::ExchangeMonitor(ltsim::World& world, const protocol::PaperOptions& paper,
+                                 const Options& options)
+    : world_(world), paper_(paper), options_(options), ownership_(world), state_word_(paper.state_coding) {
   constexpr std::size_t usual_requests = 4;
   exchanges_.reserve(usual_requests);
   world_.whenever_idle([this] { check_when_idle(); });
 }
 
+void ExchangeMonitor::slave_opened() {
+  using Initialiser = protocol::PaperOptions::Initialiser;
+  const bool has_zeroed =
+      paper_.initialiser == Initialiser::slave || paper_.initialiser == Initialiser::creator_and_slave;
+  if (has_zeroed && published_count_ != 0) reset_in_use_ = true;
+}
+
 void ExchangeMonitor::submitted(std::span<const std::byte> request) noexcept {
-  exchanges_.push_back(Exchange{.request = Bytes(request.begin(), request.end()), .answer = {}});
-  world_.note([&] { return fmt::format("SUBMIT {}: {}", number_of_current(), hex(request)); });
+  exchanges_.push_back(Exchange{.request = Bytes(request.begin(), request.end()),
+                                .answer = {},
+                                .task = running().id,
+                                .tasks_count = world_.scheduler().tasks_count()});
+  ownership_.enters(running().id, Use::writes_request);
+  world_.note([&] { return fmt::format("SUBMIT {}: {}", exchanges_.size(), hex(request)); });
 }
 
 void ExchangeMonitor::published() noexcept {
-  doorbell_unanswered_ = true;
-  world_.note([&] { return fmt::format("PUBLISH {}", number_of_current()); });
+  const std::size_t own = index_of_own();
+  world_.note([&] { return fmt::format("PUBLISH {}", own + 1); });
+  ownership_.leaves(running().id);
+  ++published_count_;
+  exchanges_[own].published = true;
+  exchanges_[own].taken = false;
+  exchanges_[own].sender_waits = true;
+  state_word_.publish_request();
+  check_state_word();
 }
 
 void ExchangeMonitor::taken() noexcept {
-  doorbell_unanswered_ = false;
   world_.note([] { return "TAKE"; });
+  ownership_.enters(running().id, Use::reads_request);
+  ++taken_count_;
+  for (Exchange& exchange : exchanges_) exchange.taken = exchange.published;
+  if (served_ && serving_ != running().process) {
+    return violated(fmt::format("I28: {} and {} serve the same kernel", world_.process_name(serving_),
+                                world_.process_name(running().process)));
+  }
+  serving_ = running().process;
+  served_ = true;
 }
 
 void ExchangeMonitor::executed(std::span<const std::byte> request) noexcept {
   world_.note([&] { return fmt::format("EXEC {}", hex(request)); });
-  const auto found = std::find_if(exchanges_.begin(), exchanges_.end(), [&](const Exchange& exchange) {
-    return std::equal(request.begin(), request.end(), exchange.request.begin(), exchange.request.end());
-  });
-  if (found == exchanges_.end())
-    return violated(fmt::format("I3: {} was executed, which nobody submitted", hex(request)));
-  executing_ = static_cast<std::size_t>(found - exchanges_.begin());
-  if (++found->executed_count > 1 && repeatable_ == Repeatable::no) {
-    violated(fmt::format("I5: request {} was executed twice", executing_ + 1));
+  ownership_.enters(running().id, Use::writes_response);
+  const char* const no_request = taken_count_ > published_count_ ? ", I11" : "";
+  const auto found = std::ranges::find_if(
+      exchanges_, [&](const Exchange& exchange) { return std::ranges::equal(request, exchange.request); });
+  if (found == exchanges_.end()) {
+    return violated(fmt::format("I3{}{}: {} was executed, which nobody submitted", no_request,
+                                reset_in_use_ ? ", I29" : "", hex(request)));
   }
+  executing_ = static_cast<std::size_t>(found - exchanges_.begin());
+  ++found->executed_count;
+  if (found->not_executed) {
+    return violated(fmt::format("I6, I18: the kernel was told that request {} is not executed, and it was",
+                                executing_ + 1));
+  }
+  if (found->executed_count > 1 && options_.repeatable == Repeatable::no)
+    violated(fmt::format("I5{}: request {} was executed twice", no_request, executing_ + 1));
 }
 
 void ExchangeMonitor::answered(std::span<const std::byte> response) noexcept {
   world_.note([&] { return fmt::format("ANSWER {}", hex(response)); });
+  ownership_.leaves(running().id);
   if (executing_ != none) exchanges_[executing_].answer.assign(response.begin(), response.end());
+}
+
+void ExchangeMonitor::announced() noexcept {
+  unread_ = executing_;
+  state_word_.publish_response();
+  check_state_word();
+}
+
+void ExchangeMonitor::accepted() noexcept {
+  ownership_.enters(running().id, Use::reads_response);
+  unread_ = none;
 }
 
 void ExchangeMonitor::delivered(std::span<const std::byte> response) noexcept {
   world_.note([&] { return fmt::format("DELIVER {}", hex(response)); });
-  const auto found = std::find_if(exchanges_.begin(), exchanges_.end(), [&](const Exchange& exchange) {
-    return exchange.executed_count != 0 &&
-           std::equal(response.begin(), response.end(), exchange.answer.begin(), exchange.answer.end());
+  const bool takes_back = paper_.read_wait == protocol::PaperOptions::ReadWait::poll &&
+                          paper_.state_taken_back == protocol::PaperOptions::StateTakenBack::by_master;
+  if (takes_back) {
+    state_word_.take_back_response();
+    check_state_word();
+  }
+  const bool wiped_another = takes_back && unread_ != none && exchanges_[unread_].delivered_count == 0;
+  check_delivered(response, wiped_another);
+  ownership_.leaves(running().id);
+}
+
+void ExchangeMonitor::check_delivered(std::span<const std::byte> response, bool wiped_another) {
+  Exchange& own = exchanges_[index_of_own()];
+  const std::size_t number = index_of_own() + 1;
+  own.sender_waits = false;
+  const auto found = std::ranges::find_if(exchanges_, [&](const Exchange& exchange) {
+    return exchange.executed_count != 0 && std::ranges::equal(response, exchange.answer);
   });
+  if (found == exchanges_.end() && response.empty())
+    return violated(
+        fmt::format("I1: nothing was delivered for request {}, which nobody answered yet", number));
   if (found == exchanges_.end()) {
     // Bytes of another request's answer break I1 as well, though they are not the whole of it.
-    return violated(fmt::format("{}: {} was delivered for request {}, which nobody answered so",
-                                holds_bytes_of_another_answer(response) ? "I1, I4" : "I4", hex(response),
-                                number_of_current()));
+    return violated(fmt::format("{}I4{}: {} was delivered for request {}, which nobody answered so",
+                                holds_bytes_of_another_answer(response, own) ? "I1, " : "",
+                                ownership_.is_disturbed(running().id) ? ", I7" : "", hex(response), number));
   }
+  ++found->delivered_count;
   const auto from = found - exchanges_.begin() + 1;
-  if (&*found != &current()) {
-    return violated(
-        fmt::format("I1: the answer to request {} was delivered for request {}", from, number_of_current()));
+  if (&*found != &own && wiped_another && unread_ + 1 == number) {
+    return violated(fmt::format(
+        "I1, I18: the answer to request {} was delivered for request {}, whose own was wiped unread", from,
+        number));
   }
-  if (++found->delivered_count > 1)
+  if (&*found != &own) {
+    if (options_.foreign_answers_tolerated != 0) {
+      --options_.foreign_answers_tolerated;
+      return;
+    }
+    return violated(fmt::format("I1: the answer to request {} was delivered for request {}", from, number));
+  }
+  if (wiped_another && unread_ + 1 != number)
+    return violated(fmt::format("I18: the answer to request {} was wiped unread", unread_ + 1));
+  if (found->delivered_count > 1)
     violated(fmt::format("I2: the answer to request {} was delivered twice", from));
 }
 
 void ExchangeMonitor::ended(protocol::ExchangeOutcome outcome) noexcept {
-  world_.note([&] {
-    return fmt::format("OUTCOME {}: {}", number_of_current(),
-                       outcome == protocol::ExchangeOutcome::ok ? "ok" : "not ok");
-  });
-  if (++current().ended_count > 1) violated(fmt::format("I18: request {} ended twice", number_of_current()));
+  // The wrapper means the request that it was given last, whichever thread gave it.
+  Exchange& last = exchanges_.back();
+  world_.note([&] { return fmt::format("OUTCOME {}: {}", exchanges_.size(), to_string(outcome)); });
+  if (last.task == running().id) last.sender_waits = false;
+  last.not_executed = outcome == protocol::ExchangeOutcome::not_executed;
+  if (++last.ended_count > 1) violated(fmt::format("I18: request {} ended twice", exchanges_.size()));
 }
 
 void ExchangeMonitor::check_at_end() {
@@ -92,14 +182,24 @@ void ExchangeMonitor::check_at_end() {
     if (exchanges_[i].ended_count != 1)
       world_.require(false, fmt::format("I18: request {} never ended", i + 1));
   }
+  if (reset_in_use_) world_.require(false, "I29: the segment was filled with zeros while it was in use");
+  if (ownership_.first_conflict()) world_.require(false, fmt::format("I7: {}", *ownership_.first_conflict()));
 }
 
-bool ExchangeMonitor::holds_bytes_of_another_answer(std::span<const std::byte> response) const noexcept {
+void ExchangeMonitor::check_state_word() {
+  // The store that the running task has just made; between it and the event lies no other step.
+  const ltsim::Operation& store = world_.scheduler().pending(running());
+  if (world_.segments().value_at(store) != state_word_.word())
+    violated("I14: a change of the state word has undone another");
+}
+
+bool ExchangeMonitor::holds_bytes_of_another_answer(std::span<const std::byte> response,
+                                                    const Exchange& own) const noexcept {
   const auto stands_at = [](const Exchange& exchange, std::size_t place, std::byte byte) {
     return place < exchange.answer.size() && exchange.answer[place] == byte;
   };
   for (std::size_t i = 0; i < response.size(); ++i) {
-    if (stands_at(exchanges_.back(), i, response[i])) continue;
+    if (stands_at(own, i, response[i])) continue;
     for (const Exchange& other : exchanges_) {
       if (stands_at(other, i, response[i])) return true;
     }
@@ -108,10 +208,46 @@ bool ExchangeMonitor::holds_bytes_of_another_answer(std::span<const std::byte> r
 }
 
 void ExchangeMonitor::check_when_idle() {
-  if (doorbell_unanswered_ && world_.blocked_in(slave_task_).starts_with("sem_wait ")) {
-    violated(fmt::format("I9: request {} is published and posted, and {} sleeps", number_of_current(),
-                         slave_task_));
+  if (state_word_.says_response()) return;
+  const auto waiting = std::ranges::find_if(
+      exchanges_, [this](const Exchange& exchange) { return waits_for_answer(exchange); });
+  if (waiting == exchanges_.end()) return;
+  const ltsim::Task* const slave = sleeping_slave();
+  if (slave == nullptr) return;
+  const auto number = waiting - exchanges_.begin() + 1;
+  if (slave->id >= waiting->tasks_count) {
+    violated(fmt::format(
+        "I17, I18: request {} was taken by an emulator that was killed, and the next one sleeps", number));
+  } else if (!waiting->taken) {
+    violated(fmt::format("I9: request {} is published and posted, and {} sleeps", number, slave->name));
+  } else {
+    violated(fmt::format("I18: request {} will never be answered: {} sleeps", number, slave->name));
   }
+}
+
+bool ExchangeMonitor::waits_for_answer(const Exchange& exchange) const noexcept {
+  const ltsim::Task& sender = world_.scheduler().task(exchange.task);
+  return exchange.sender_waits && sender.state == ltsim::Task::State::blocked &&
+         world_.scheduler().pending(sender).kind == ltsim::OperationKind::sleep;
+}
+
+const ltsim::Task* ExchangeMonitor::sleeping_slave() const noexcept {
+  for (std::size_t i = 0; i < world_.scheduler().tasks_count(); ++i) {
+    const ltsim::Task& task = world_.scheduler().task(static_cast<ltsim::TaskId>(i));
+    if (task.state == ltsim::Task::State::blocked &&
+        world_.scheduler().pending(task).kind == ltsim::OperationKind::sem_wait) {
+      return &task;
+    }
+  }
+  return nullptr;
+}
+
+const ltsim::Task& ExchangeMonitor::running() const noexcept { return *ltsim::current_task; }
+
+std::size_t ExchangeMonitor::index_of_own() const noexcept {
+  const auto own = std::find_if(exchanges_.rbegin(), exchanges_.rend(),
+                                [this](const Exchange& exchange) { return exchange.task == running().id; });
+  return own == exchanges_.rend() ? none : static_cast<std::size_t>(exchanges_.rend() - own) - 1;
 }
 
 void ExchangeMonitor::violated(std::string message) {

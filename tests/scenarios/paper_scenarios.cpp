@@ -1,114 +1,153 @@
-// The published handoff: a kernel that sends requests through a SharedMemoryPort, an emulator that serves
-// them with the EmulatorHandler. Production code on both sides; the PLC behind it is a mirror, so that each
-// answer tells its request.
+#include "tests/scenarios/paper_scenarios.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
-#include <thread>
+#include <utility>
 
-#include "emulator_models/emulator_handler.hpp"
-#include "emulator_models/i_plc_emulator.hpp"
-#include "protocol/shared_memory_port.hpp"
-#include "protocol/slave_shared_memory_wrapper.hpp"
 #include "sim_clock/scenario/scenario.hpp"
-#include "tests/scenarios/exchange_monitor.hpp"
-#include "tests/scenarios/segment_names.hpp"
 
+namespace scenarios {
 namespace {
 
 using namespace std::chrono_literals;
 using protocol::PaperOptions;
-using Repeatable = scenarios::ExchangeMonitor::Repeatable;
 
-/// Answers with the request's bytes, the top bit of each set.
-class MirrorPlc final : public emulator_models::IPlcEmulator {
- public:
-  protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override {
-    protocol::fx::FrameBytes answer;
-    for (const std::byte byte : request) answer.push_back(byte | std::byte{0x80});
-    return answer;
-  }
+constexpr auto time_outs = PaperExchange::TimeOuts::as_published;
+constexpr ExchangeMonitor::Options reads{.repeatable = ExchangeMonitor::Repeatable::yes};
+
+constexpr std::array table{
+    PaperScenario{"paper/one-request", "the published handoff with its defaults, one request", "", {}},
+    PaperScenario{"paper/three-requests",
+                  "three requests and no time-out: the published handoff is sound here",
+                  "",
+                  {.requests = 3}},
+    PaperScenario{"paper/time-out",
+                  "K8: the kernel gives up a read after 100 ms and sends the next one",
+                  "I1",
+                  {.time_outs = time_outs, .requests = 3, .monitor = reads}},
+    PaperScenario{
+        "paper/semaphore-reset",
+        "K3: the emulator sets the semaphore to 0 after each answer; nothing times out",
+        "I9",
+        {.options = {.semaphore_after_answer = PaperOptions::SemaphoreAfterAnswer::reset}, .requests = 2}},
+    PaperScenario{"paper/late-emulator",
+                  "the emulator is started up to 400 ms after the kernel, which times out after 100 ms",
+                  "I5",
+                  {.time_outs = time_outs, .requests = 3, .emulator_is_late = true}},
+
+    PaperScenario{"paper/h01-answer-to-nothing",
+                  "K1: the kernel reads at once, before anybody has answered",
+                  "I1",
+                  {.options = {.read_wait = PaperOptions::ReadWait::immediately}, .requests = 2}},
+    PaperScenario{"paper/h02-new-length-old-bytes",
+                  "K1: the kernel reads at once, while the answer is written",
+                  "I4",
+                  {.options = {.read_wait = PaperOptions::ReadWait::immediately}, .requests = 2}},
+    PaperScenario{"paper/h03-stale-answer",
+                  "after a time-out the late answer is delivered for the next request",
+                  "I1",
+                  {.time_outs = time_outs, .requests = 2, .monitor = reads}},
+    PaperScenario{
+        "paper/h03b-shifted-answers",
+        "after one time-out each request gets the answer of the one before",
+        "I1: the answer to request 2",
+        {.time_outs = time_outs,
+         .requests = 3,
+         .monitor = {.repeatable = ExchangeMonitor::Repeatable::yes, .foreign_answers_tolerated = 1}}},
+    PaperScenario{"paper/h04-invented-request",
+                  "after a time-out the emulator reads while the next request is written over the last",
+                  "I3",
+                  {.time_outs = time_outs, .requests = 2, .monitor = reads}},
+    PaperScenario{"paper/h05-executed-twice",
+                  "after a time-out two posts and one area: the second request runs twice",
+                  "I5",
+                  {.time_outs = time_outs, .requests = 2}},
+    PaperScenario{"paper/h05b-refused-yet-executed",
+                  "K4: after a time-out a post is refused, its request is executed",
+                  "I6",
+                  {.options = {.semaphore_maximum = PaperOptions::SemaphoreMaximum::one},
+                   .time_outs = time_outs,
+                   .requests = 2}},
+    PaperScenario{
+        "paper/h06-lost-wake-up",
+        "K3: the emulator sets the semaphore to 0 after each answer",
+        "I9",
+        {.options = {.semaphore_after_answer = PaperOptions::SemaphoreAfterAnswer::reset}, .requests = 2}},
+    PaperScenario{"paper/h07-torn-answer",
+                  "after a time-out the emulator writes an answer while the kernel reads one",
+                  "I4",
+                  {.time_outs = time_outs, .requests = 2, .monitor = reads}},
+    PaperScenario{"paper/h08-wiped-answer",
+                  "after a time-out the kernel's state := idle wipes an answer that just came",
+                  "I18",
+                  {.time_outs = time_outs, .requests = 2, .monitor = reads}},
+    PaperScenario{"paper/h09-late-emulator",
+                  "the emulator is started late, to a heap of posts and one request",
+                  "I5",
+                  {.time_outs = time_outs, .requests = 3, .emulator_is_late = true}},
+    PaperScenario{"paper/h10-wiped-request",
+                  "K5: the emulator fills the segment with zeros when it starts",
+                  "I29",
+                  {.options = {.initialiser = PaperOptions::Initialiser::slave}}},
+    PaperScenario{"paper/h11-token-without-request",
+                  "K10: the semaphore begins with a count of one",
+                  "I11",
+                  {.options = {.semaphore_start = PaperOptions::SemaphoreStart::one}}},
+    PaperScenario{"paper/h13-sent-again",
+                  "K8: after a time-out the kernel sends the same request again",
+                  "I5",
+                  {.options = {.on_time_out = PaperOptions::OnTimeOut::send_again}, .time_outs = time_outs}},
+    PaperScenario{"paper/h15-two-threads",
+                  "K11: two threads of the kernel send through one port",
+                  "I1",
+                  {.kernel_threads = 2, .monitor = reads}},
+    PaperScenario{"paper/h16-two-emulators",
+                  "K11: two emulators serve one segment",
+                  "I28",
+                  {.requests = 2, .emulators = 2}},
+    PaperScenario{"paper/h18-lost-flag",
+                  "K2: the state is two halves, each changed by load and store",
+                  "I14",
+                  {.options = {.state_coding = PaperOptions::StateCoding::halves},
+                   .time_outs = time_outs,
+                   .requests = 2,
+                   .monitor = reads}},
+    // The time-out is there to end the second read, which does not wait.
+    PaperScenario{
+        "paper/h26-answer-twice",
+        "K7: nobody takes the state back, and the kernel looks twice",
+        "I2",
+        {.options = {.state_taken_back = PaperOptions::StateTakenBack::by_nobody, .read_timeout = 1h},
+         .time_outs = time_outs,
+         .reads_twice = true}},
 };
 
-/// Request 1 is 11 12 13, request 2 is 21 22, request 3 is 31 32 33 ...: no part of one is a part of another,
-/// and two in a row differ in length.
-std::span<const std::byte> request_bytes(unsigned number, std::span<std::byte, 3> into) {
-  const std::size_t length = number % 2 == 1 ? 3 : 2;
-  for (unsigned i = 0; i < length; ++i) into[i] = static_cast<std::byte>(number << 4U | (i + 1));
-  return into.first(length);
+template <std::size_t index>
+void run(ltsim::World& world) {
+  run_exchange(world, table[index].exchange);
 }
 
-PaperOptions defaults() {
-  PaperOptions options;
-  options.request_bytes_max = 8;
-  options.response_bytes_max = 8;
-  return options;
+template <std::size_t... indexes>
+std::array<ltsim::ScenarioRegistration, sizeof...(indexes)> register_all(std::index_sequence<indexes...>) {
+  return {ltsim::ScenarioRegistration{table[indexes].name, table[indexes].description, &run<indexes>}...};
 }
 
-struct Exchange {
-  PaperOptions options = defaults();
-  unsigned requests = 1;
-  Repeatable repeatable = Repeatable::no;
-  /// When the emulator is started, after the kernel.
-  std::chrono::nanoseconds emulator_start_delay{0};
-};
-
-void run_exchange(ltsim::World& world, const Exchange& exchange) {
-  constexpr const char* segment = "handoff";
-  scenarios::name_regions(world, segment, exchange.options);
-  scenarios::ExchangeMonitor monitor{world, "emulator/main", exchange.repeatable};
-  MirrorPlc plc;
-  protocol::SlaveSharedMemoryWrapper slave{segment, exchange.options, &monitor};
-  emulator_models::EmulatorHandler handler{slave, plc};
-  bool both_open = true;
-
-  world.process("kernel").start("main", [&] {
-    protocol::SharedMemoryPort port{segment, exchange.options, &monitor};
-    both_open = port.open().has_value() && both_open;
-    for (unsigned number = 1; number <= exchange.requests; ++number) {
-      std::byte request[3];
-      std::byte answer[8];
-      if (!port.write(request_bytes(number, request)) || !port.read(answer)) break;
-    }
-    std::this_thread::sleep_for(50ms);  // the machine stays on for a while
-    handler.request_stop();             // the operator ends the emulator
-  });
-  world.process("emulator").start("main", [&] {
-    if (exchange.emulator_start_delay > 0ns) std::this_thread::sleep_for(exchange.emulator_start_delay);
-    both_open = slave.open().has_value() && both_open;
-    handler.run();
-  });
-  world.run();
-  world.require(both_open, "both sides can open the segment");
-  monitor.check_at_end();
-}
+const auto registrations = register_all(std::make_index_sequence<table.size()>{});
 
 }  // namespace
 
-SCENARIO("paper/one-request", "the published handoff with its defaults, one request") {
-  run_exchange(world, {});
+std::span<const PaperScenario> paper_scenarios() { return table; }
+
+bool is_shown_by(const PaperScenario& scenario, std::string_view message) {
+  if (scenario.shows.find(':') != std::string_view::npos) return message.starts_with(scenario.shows);
+  const std::string_view numbers = message.substr(0, message.find(':'));
+  for (std::size_t at = 0; at <= numbers.size();) {
+    const std::size_t end = std::min(numbers.find(", ", at), numbers.size());
+    if (numbers.substr(at, end - at) == scenario.shows) return true;
+    at = end + 2;
+  }
+  return false;
 }
 
-SCENARIO("paper/three-requests", "three requests and no time-out: the published handoff is sound here") {
-  Exchange exchange{.requests = 3};
-  exchange.options.on_time_out = PaperOptions::OnTimeOut::wait_for_ever;
-  run_exchange(world, exchange);
-}
-
-SCENARIO("paper/time-out", "K8: the kernel gives up a read after 100 ms and sends the next one") {
-  run_exchange(world, {.requests = 3, .repeatable = Repeatable::yes});
-}
-
-SCENARIO("paper/semaphore-reset",
-         "K3: the emulator sets the semaphore to 0 after each answer; nothing times out") {
-  Exchange exchange{.requests = 2};
-  exchange.options.semaphore_after_answer = PaperOptions::SemaphoreAfterAnswer::reset;
-  exchange.options.on_time_out = PaperOptions::OnTimeOut::wait_for_ever;
-  run_exchange(world, exchange);
-}
-
-SCENARIO("paper/late-emulator",
-         "the emulator is started up to 400 ms after the kernel, which times out after 100 ms") {
-  Exchange exchange{.requests = 3};
-  exchange.emulator_start_delay = 50ms * world.choose("delay", 9);
-  run_exchange(world, exchange);
-}
+}  // namespace scenarios

@@ -1,0 +1,128 @@
+#include "tests/scenarios/paper_exchange.hpp"
+
+#include <array>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "emulator_models/emulator_handler.hpp"
+#include "emulator_models/i_plc_emulator.hpp"
+#include "protocol/shared_memory_port.hpp"
+#include "protocol/slave_shared_memory_wrapper.hpp"
+#include "tests/scenarios/segment_names.hpp"
+
+namespace scenarios {
+namespace {
+
+using namespace std::chrono_literals;
+using protocol::PaperOptions;
+
+constexpr const char* segment = "handoff";
+constexpr std::array emulator_names{"emulator", "second-emulator"};
+
+/// Answers with the request's bytes, the top bit of each set.
+class MirrorPlc final : public emulator_models::IPlcEmulator {
+ public:
+  protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override {
+    protocol::fx::FrameBytes answer;
+    for (const std::byte byte : request) answer.push_back(byte | std::byte{0x80});
+    return answer;
+  }
+};
+
+/// Request 1 is 11 12 13, request 2 is 21 22, request 3 is 31 32 33 ... up to 7: no part of one is a part of
+/// another, and two in a row differ in length.
+std::span<const std::byte> request_bytes(unsigned number, std::span<std::byte, 3> into) {
+  const std::size_t length = number % 2 == 1 ? 3 : 2;
+  for (unsigned i = 0; i < length; ++i) into[i] = static_cast<std::byte>(number << 4U | (i + 1));
+  return into.first(length);
+}
+
+PaperOptions options_of(const PaperExchange& exchange) {
+  PaperOptions options = exchange.options;
+  options.request_bytes_max = 8;
+  options.response_bytes_max = 8;
+  if (exchange.time_outs == PaperExchange::TimeOuts::never)
+    options.on_time_out = PaperOptions::OnTimeOut::wait_for_ever;
+  return options;
+}
+
+/// The two sides of one execution, and what they know of each other outside of the segment: the operator, who
+/// stops the emulators when the kernel has finished. Wrappers belong to the processes that use them.
+class Sides {
+ public:
+  Sides(ltsim::World& world, const PaperExchange& exchange)
+      : exchange_{exchange}, options_{options_of(exchange)}, monitor_{world, options_, exchange.monitor} {
+    if (exchange.emulator_is_late) emulator_delay_ = 50ms * world.choose("delay", 9);
+  }
+
+  void run_kernel() {
+    protocol::SharedMemoryPort port{segment, options_, &monitor_};
+    both_open_ = port.open().has_value() && both_open_;
+    std::vector<std::thread> others;
+    for (unsigned thread = 1; thread < exchange_.kernel_threads; ++thread)
+      others.emplace_back([this, &port] { send_requests(port); });
+    send_requests(port);
+    for (std::thread& other : others) other.join();
+    std::this_thread::sleep_for(50ms);  // the machine stays on for a while
+    stop_emulators();
+  }
+
+  void run_emulator() {
+    if (emulator_delay_ > 0ns) std::this_thread::sleep_for(emulator_delay_);
+    if (stopped_) return;
+    MirrorPlc plc;
+    protocol::SlaveSharedMemoryWrapper slave{segment, options_, &monitor_};
+    emulator_models::EmulatorHandler handler{slave, plc};
+    serving_.push_back(&handler);
+    both_open_ = slave.open().has_value() && both_open_;
+    monitor_.slave_opened();
+    handler.run();
+  }
+
+  void check_at_end(ltsim::World& world) {
+    world.require(both_open_, "both sides can open the segment");
+    monitor_.check_at_end();
+  }
+
+ private:
+  void send_requests(protocol::SharedMemoryPort& port) {
+    for (unsigned i = 0; i < exchange_.requests; ++i) {
+      std::byte request[3];
+      std::byte answer[8];
+      if (!port.write(request_bytes(next_request_++, request)) || !port.read(answer)) return;
+      if (!exchange_.reads_twice) continue;
+      port.set_timeouts({.read = 0ns});
+      if (!port.read(answer)) return;
+      port.set_timeouts({.read = options_.read_timeout});
+    }
+  }
+
+  void stop_emulators() {
+    stopped_ = true;
+    for (emulator_models::EmulatorHandler* handler : serving_) handler->request_stop();
+  }
+
+  const PaperExchange& exchange_;
+  PaperOptions options_;
+  ExchangeMonitor monitor_;
+  std::chrono::nanoseconds emulator_delay_{0};
+  std::vector<emulator_models::EmulatorHandler*> serving_;
+  unsigned next_request_ = 1;
+  bool both_open_ = true;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+void run_exchange(ltsim::World& world, const PaperExchange& exchange) {
+  name_regions(world, segment, options_of(exchange));
+  Sides sides{world, exchange};
+  world.process("kernel").start("main", [&] { sides.run_kernel(); });
+  for (unsigned i = 0; i < exchange.emulators; ++i)
+    world.process(emulator_names.at(i)).start("main", [&] { sides.run_emulator(); });
+  world.run();
+  sides.check_at_end(world);
+}
+
+}  // namespace scenarios
