@@ -11,10 +11,14 @@ AnchorTracker::AnchorTracker(const World& world, StepListener* next) : world_(wo
 void AnchorTracker::arrives(const Task& task, const Operation& operation) noexcept {
   stand_at(
       fmt::format("{} before {} {}", task.name, to_string(operation.kind), world_.objects().name(operation)));
+  if (arrived_at_.size() <= task.id) arrived_at_.resize(task.id + 1U);
+  arrived_at_[task.id] = anchor_;
   if (next_ != nullptr) next_->arrives(task, operation);
 }
 
 void AnchorTracker::performs(const Task& task, const Operation& operation) noexcept {
+  // Others may have run since it arrived. What is chosen now, a fault, is chosen where this task stands.
+  anchor_ = arrived_at_[task.id];
   if (next_ != nullptr) next_->performs(task, operation);
 }
 

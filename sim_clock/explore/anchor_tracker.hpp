@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "sim_clock/world/step_listener.hpp"
 
@@ -34,6 +35,7 @@ class AnchorTracker final : public StepListener {
   StepListener* next_;
   std::string anchor_ = "- start";
   std::unordered_map<std::string, unsigned> visits_;
+  std::vector<std::string> arrived_at_;  // by task number: its anchor before its latest step
 };
 
 }  // namespace ltsim

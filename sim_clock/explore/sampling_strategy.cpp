@@ -13,6 +13,7 @@ constexpr std::uint32_t orders_of_magnitude = 20;  // 1 us << 20 is about 1 s
 
 void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   generator_ = RandomGenerator{seed};
+  period_ = period_learned_;
   time_mode_ = begin();
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
   slow_moments_.begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
@@ -21,6 +22,7 @@ void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
+  period_learned_ = period_;
   if (slow_moments_.passed() != 0) slow_moments_.learn();
   for (Occasions& fault : faults_) {
     if (fault.passed() != 0) fault.learn();

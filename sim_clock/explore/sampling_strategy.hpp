@@ -46,8 +46,9 @@ class SamplingStrategy : public Strategy {
 
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
-  SimTime period_{0};        // the last time to the next timer that was seen, in any execution; 0: none yet
-  unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
+  SimTime period_{0};          // the last time to the next timer that was seen; 0: none yet
+  SimTime period_learned_{0};  // the same at the end of the last execution that counts
+  unsigned burst_bits_ = 1;    // mode `bursts`: a slow moment has the probability 2^-bits
   Occasions slow_moments_;
   std::array<Occasions, fault_kinds_count> faults_;
 };

@@ -16,12 +16,11 @@ using ltsim::current_task;
 
 namespace {
 
-/// @return 0
-int sleep_for(std::chrono::nanoseconds duration) noexcept {
+/// @return what is left if it was interrupted, otherwise 0
+std::chrono::nanoseconds sleep_for(std::chrono::nanoseconds duration) noexcept {
   ltsim::World& world = *current_task->world;
   const auto longest = ltsim::VirtualClock::never - world.now();
-  world.sleep_until(world.now() + std::min(duration, longest));
-  return 0;
+  return world.sleep_until(world.now() + std::min(duration, longest));
 }
 
 /// The numbered clocks of <linux/time.h>; dynamic ones (devices, other processes) are not simulated.
@@ -36,6 +35,16 @@ std::chrono::nanoseconds to_duration(const timespec& time) noexcept {
   constexpr time_t seconds_max = 200LL * 365 * 24 * 3600;
   return std::chrono::seconds{time.tv_sec < seconds_max ? time.tv_sec : seconds_max} +
          std::chrono::nanoseconds{time.tv_nsec};
+}
+
+/// @param remaining  null, or where to put what is left after an interrupt
+/// @return           0, or EINTR
+int sleep_for(const timespec& duration, timespec* remaining) noexcept {
+  const auto left = sleep_for(to_duration(duration));
+  if (left.count() == 0) return 0;
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(left);
+  if (remaining != nullptr) *remaining = {.tv_sec = seconds.count(), .tv_nsec = (left - seconds).count()};
+  return EINTR;
 }
 
 }  // namespace
@@ -76,27 +85,31 @@ extern "C" int nanosleep(const timespec* duration, timespec* remaining) {
     errno = EINVAL;
     return -1;
   }
-  return sleep_for(to_duration(*duration));
+  const int error = sleep_for(*duration, remaining);
+  if (error == 0) return 0;
+  errno = error;
+  return -1;
 }
 
 extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* remaining) {
   if (current_task == nullptr) return LTSIM_NEXT(clock_nanosleep)(clock, flags, time, remaining);
   if (!is_valid(*time) || !is_known(clock)) return EINVAL;
-  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(to_duration(*time));
+  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(*time, remaining);
   ltsim::World& world = *current_task->world;
-  world.sleep_until(world.to_sim_time(clock, *time));
-  return 0;
+  return world.sleep_until(world.to_deadline(clock, *time)).count() == 0 ? 0 : EINTR;
 }
 
 extern "C" int usleep(useconds_t microseconds) {
   if (current_task == nullptr) return LTSIM_NEXT(usleep)(microseconds);
-  return sleep_for(std::chrono::microseconds{microseconds});
+  if (sleep_for(std::chrono::microseconds{microseconds}).count() == 0) return 0;
+  errno = EINTR;
+  return -1;
 }
 
 extern "C" unsigned sleep(unsigned seconds) {
   if (current_task == nullptr) return LTSIM_NEXT(sleep)(seconds);
-  sleep_for(std::chrono::seconds{seconds});
-  return 0;
+  const auto left = std::chrono::floor<std::chrono::seconds>(sleep_for(std::chrono::seconds{seconds}));
+  return static_cast<unsigned>(left.count());
 }
 
 extern "C" int sched_yield() noexcept {

@@ -42,7 +42,7 @@ extern "C" int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* d
   if (current_task != nullptr) {
     if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
-    return world.mutexes().timed_lock(mutex, world.to_sim_time(CLOCK_REALTIME, *deadline));
+    return world.mutexes().timed_lock(mutex, world.to_deadline(CLOCK_REALTIME, *deadline));
   }
   return LTSIM_NEXT(pthread_mutex_timedlock)(mutex, deadline);
 }
@@ -52,7 +52,7 @@ extern "C" int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
   if (current_task != nullptr) {
     if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
-    return world.mutexes().timed_lock(mutex, world.to_sim_time(clock, *deadline));
+    return world.mutexes().timed_lock(mutex, world.to_deadline(clock, *deadline));
   }
   return LTSIM_NEXT(pthread_mutex_clocklock)(mutex, clock, deadline);
 }
@@ -85,7 +85,7 @@ extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t
   if (current_task != nullptr) {
     if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
-    return world.mutexes().timed_wait(condition, mutex, world.to_sim_time(clock_of(condition), *deadline));
+    return world.mutexes().timed_wait(condition, mutex, world.to_deadline(clock_of(condition), *deadline));
   }
   return LTSIM_NEXT(pthread_cond_timedwait)(condition, mutex, deadline);
 }
@@ -95,7 +95,7 @@ extern "C" int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t
   if (current_task != nullptr) {
     if (!is_valid(*deadline)) return EINVAL;
     ltsim::World& world = *current_task->world;
-    return world.mutexes().timed_wait(condition, mutex, world.to_sim_time(clock, *deadline));
+    return world.mutexes().timed_wait(condition, mutex, world.to_deadline(clock, *deadline));
   }
   return LTSIM_NEXT(pthread_cond_clockwait)(condition, mutex, clock, deadline);
 }

@@ -9,6 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstddef>
+#include <initializer_list>
+
 #include "sim_clock/takeover/next.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -20,6 +24,15 @@ namespace {
 
 void point(OperationKind kind) noexcept { current_task->world->scheduler().point({.kind = kind}); }
 
+/// Whether a granted fault makes the call fail; errno is then one of `errors`.
+bool fails(std::initializer_list<int> errors) noexcept {
+  const std::size_t variant =
+      current_task->world->faults().strike(ltsim::FaultKind::call_failure, errors.size());
+  if (variant == 0) return false;
+  errno = errors.begin()[variant - 1];
+  return true;
+}
+
 bool is_simulated(int descriptor) noexcept {
   return current_task != nullptr && Segments::is_descriptor(descriptor);
 }
@@ -30,6 +43,7 @@ extern "C" int shm_open(const char* name, int flags, mode_t mode) {
   if (current_task == nullptr)
     return ltsim::World::refuses_real("shm_open") ? -1 : LTSIM_NEXT(shm_open)(name, flags, mode);
   point(OperationKind::shm_open);
+  if (fails({EACCES, EMFILE, ENFILE})) return -1;  // shm_open(3)
   return current_task->world->segments().open(name, flags);
 }
 
@@ -42,6 +56,7 @@ extern "C" int shm_unlink(const char* name) {
 extern "C" int ftruncate(int descriptor, off_t bytes) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(ftruncate)(descriptor, bytes);
   point(OperationKind::shm_resize);
+  if (fails({EINTR, EFBIG, EIO})) return -1;  // ftruncate(2)
   return current_task->world->segments().resize(descriptor, bytes);
 }
 
@@ -75,6 +90,7 @@ extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flag
   if (!is_simulated(descriptor))
     return LTSIM_NEXT(mmap)(address, bytes, protection, flags, descriptor, offset);
   point(OperationKind::shm_map);
+  if (fails({EAGAIN, ENFILE, ENOMEM})) return MAP_FAILED;  // mmap(2)
   return current_task->world->segments().map(bytes, protection, flags, descriptor, offset);
 }
 

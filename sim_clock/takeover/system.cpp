@@ -44,8 +44,8 @@ long futex(std::uint32_t* word, int operation, std::uint32_t value, const timesp
       return world.mutexes().futex_wait(
           word, value,
           timeout == nullptr
-              ? ltsim::VirtualClock::never
-              : world.to_sim_time((operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC,
+              ? ltsim::Deadline{ltsim::VirtualClock::never}
+              : world.to_deadline((operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC,
                                   *timeout),
           shared);
     case FUTEX_WAKE:

@@ -86,7 +86,7 @@ int Mutexes::lock(pthread_mutex_t* mutex) noexcept {
   return acquire(state, mutex, OperationKind::mutex_lock, VirtualClock::never);
 }
 
-int Mutexes::timed_lock(pthread_mutex_t* mutex, SimTime deadline) noexcept {
+int Mutexes::timed_lock(pthread_mutex_t* mutex, Deadline deadline) noexcept {
   State& state = resolve(mutex);
   return acquire(state, mutex, OperationKind::mutex_timedlock, deadline);
 }
@@ -103,7 +103,7 @@ int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
   return take(state, mutex);
 }
 
-int Mutexes::acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept {
+int Mutexes::acquire(State& state, const void* address, OperationKind kind, Deadline deadline) noexcept {
   world_.scheduler().point(operation_on(kind, state.object));
   const std::uint32_t self = current_task->id + 1U;
   if (state.owner_plus_one == self) {
@@ -134,7 +134,7 @@ int Mutexes::take(State& state, const void* address) noexcept {
   return EOWNERDEAD;
 }
 
-Scheduler::Wake Mutexes::wait_for_owner(const State& state, const void* address, SimTime deadline) noexcept {
+Scheduler::Wake Mutexes::wait_for_owner(const State& state, const void* address, Deadline deadline) noexcept {
   Scheduler& scheduler = world_.scheduler();
   Task& self = *current_task;
   Task& owner = scheduler.task(static_cast<TaskId>(state.owner_plus_one - 1));
@@ -231,18 +231,21 @@ int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {
   return wait_until(condition, mutex, OperationKind::cond_wait, VirtualClock::never);
 }
 
-int Mutexes::timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, SimTime deadline) noexcept {
+int Mutexes::timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, Deadline deadline) noexcept {
   return wait_until(condition, mutex, OperationKind::cond_timedwait, deadline);
 }
 
 int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
-                        SimTime deadline) noexcept {
+                        Deadline deadline) noexcept {
   State& state = resolve(mutex);
   world_.scheduler().point(operation_on(kind, state.object));
   if (const int error = check_owner(state); error != 0) return error;
   // Like glibc, one unlock: a recursive mutex that was locked twice stays locked while its owner waits.
   if (--state.locked_count == 0) release(state, mutex);
-  const auto wake = world_.scheduler().block(condition_key(condition), deadline);
+  const bool spurious = world_.faults().strikes(FaultKind::spurious_wake);
+  // One that wakes for nothing can run again at once: when it does, the strategy says.
+  const auto wake =
+      world_.scheduler().block(condition_key(condition), spurious ? Deadline{world_.now()} : deadline);
   const std::uint32_t self = current_task->id + 1U;
   while (state.owner_plus_one != 0 && state.owner_plus_one != self) {
     wait_for_owner(state, mutex, VirtualClock::never);
@@ -252,7 +255,7 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   } else if (const int error = take(state, mutex); error != 0) {
     return error;
   }
-  return wake == Scheduler::Wake::timed_out ? ETIMEDOUT : 0;
+  return wake == Scheduler::Wake::timed_out && !spurious ? ETIMEDOUT : 0;
 }
 
 int Mutexes::signal(pthread_cond_t* condition) noexcept {
@@ -288,14 +291,17 @@ int Mutexes::once(pthread_once_t* control, void (*initialise)()) {
   return 0;
 }
 
-int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline,
+int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, Deadline deadline,
                         bool shared) noexcept {
   world_.scheduler().point(operation_on(OperationKind::futex_wait));
   if (*word != expected) {
     errno = EAGAIN;
     return -1;
   }
-  if (world_.scheduler().block(wait_key(word, shared), deadline) == Scheduler::Wake::timed_out) {
+  const bool spurious = world_.faults().strikes(FaultKind::spurious_wake);
+  const auto wake =
+      world_.scheduler().block(wait_key(word, shared), spurious ? Deadline{world_.now()} : deadline);
+  if (wake == Scheduler::Wake::timed_out && !spurious) {
     errno = ETIMEDOUT;
     return -1;
   }

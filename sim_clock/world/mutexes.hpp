@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/operation.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/task.hpp"
@@ -35,13 +35,13 @@ class Mutexes {
   // The calls, for the running task; they return 0 or an error number as POSIX.1-2017 lists them.
   int lock(pthread_mutex_t* mutex) noexcept;
   int try_lock(pthread_mutex_t* mutex) noexcept;
-  int timed_lock(pthread_mutex_t* mutex, SimTime deadline) noexcept;
+  int timed_lock(pthread_mutex_t* mutex, Deadline deadline) noexcept;
   int unlock(pthread_mutex_t* mutex) noexcept;
   int consistent(pthread_mutex_t* mutex) noexcept;
   int destroy(pthread_mutex_t* mutex) noexcept;
 
   int wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept;
-  int timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, SimTime deadline) noexcept;
+  int timed_wait(pthread_cond_t* condition, pthread_mutex_t* mutex, Deadline deadline) noexcept;
   int signal(pthread_cond_t* condition) noexcept;
   int broadcast(pthread_cond_t* condition) noexcept;
 
@@ -59,7 +59,7 @@ class Mutexes {
 
   /// FUTEX_WAIT: blocks while the word still has the value `expected`.
   /// @return 0; or -1 with errno EAGAIN or ETIMEDOUT
-  int futex_wait(const std::uint32_t* word, std::uint32_t expected, SimTime deadline, bool shared) noexcept;
+  int futex_wait(const std::uint32_t* word, std::uint32_t expected, Deadline deadline, bool shared) noexcept;
   /// FUTEX_WAKE. @return tasks woken
   int futex_wake(const std::uint32_t* word, std::size_t count_max, bool shared) noexcept;
 
@@ -67,11 +67,11 @@ class Mutexes {
   struct State;
 
   State& resolve(pthread_mutex_t* mutex) noexcept;
-  int acquire(State& state, const void* address, OperationKind kind, SimTime deadline) noexcept;
+  int acquire(State& state, const void* address, OperationKind kind, Deadline deadline) noexcept;
   /// Blocks while somebody else owns the mutex, and lends its priority if the mutex says so.
-  Scheduler::Wake wait_for_owner(const State& state, const void* address, SimTime deadline) noexcept;
+  Scheduler::Wake wait_for_owner(const State& state, const void* address, Deadline deadline) noexcept;
   int wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, OperationKind kind,
-                 SimTime deadline) noexcept;
+                 Deadline deadline) noexcept;
   /// @return 0; or EPERM where the mutex's kind checks its owner. Otherwise the execution ends as an
   /// assertion.
   int check_owner(const State& state) noexcept;

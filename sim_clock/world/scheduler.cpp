@@ -200,17 +200,20 @@ bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {
   return operation.kind == OperationKind::yield || task.looks_count >= looks_before_giving_way;
 }
 
-Scheduler::Wake Scheduler::block(WaitKey key, SimTime deadline) noexcept {
+Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
   Task& self = *running_;
   self.state = Task::State::blocked;
   self.wait_key = key;
   self.blocked_since = blocked_ever_++;
-  self.deadline = deadline;
+  self.deadline = world_.sim_time_of(deadline);
+  self.deadline_on_wall_clock = deadline.on_wall_clock;
   self.timed_out = false;
   make_unrunnable(self);
-  if (deadline != VirtualClock::never) clock_.arm(deadline, self.id);
+  if (self.deadline != VirtualClock::never) clock_.arm(self.deadline, self.id);
   if (listener_ != nullptr) [[unlikely]]
     listener_->blocks(self);
+  if (deadline.on_wall_clock) [[unlikely]]
+    world_.choose_clock_step();
   Task* const next = next_after_stop();
   if (next != &self) switch_to(*next);
   return self.timed_out ? Wake::timed_out : Wake::signalled;
@@ -287,6 +290,18 @@ void Scheduler::leave(Task& self) noexcept {
   } else {
     running_ = nullptr;
     Context::switch_between(self.context, main_context_);
+  }
+}
+
+void Scheduler::wall_clock_was_stepped(SimTime forward) noexcept {
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    Task& task = *tasks_[i];
+    if (task.state != Task::State::blocked || !task.deadline_on_wall_clock ||
+        task.deadline == VirtualClock::never) {
+      continue;
+    }
+    task.deadline = std::max(task.deadline - forward, SimTime{0});
+    clock_.arm(task.deadline, task.id);
   }
 }
 

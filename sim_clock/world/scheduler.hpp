@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "sim_clock/check/outcome.hpp"
-#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/explore/strategy.hpp"
 #include "sim_clock/world/cpu.hpp"
 #include "sim_clock/world/step_listener.hpp"
@@ -72,6 +72,8 @@ class Scheduler {
   void kill_tasks(ProcessId process) noexcept;
   /// For a running task that was killed: somebody else goes on. Does not return.
   [[noreturn]] void leave_killed() noexcept;
+  /// The wall clock was set forward by so much: waits that end by it end so much sooner.
+  void wall_clock_was_stepped(SimTime forward) noexcept;
   /// The task, which has not run yet, gets no processor before `begin`.
   void delay_start(Task& task, SimTime begin) noexcept;
   [[nodiscard]] bool has_unfinished_tasks(ProcessId process) const noexcept {
@@ -85,7 +87,7 @@ class Scheduler {
 
   enum class Wake : std::uint8_t { signalled, timed_out };
   /// Blocks the running task until wake() for `key`, or until `deadline` (VirtualClock::never: no limit).
-  Wake block(WaitKey key, SimTime deadline) noexcept;
+  Wake block(WaitKey key, Deadline deadline) noexcept;
   /// Wakes up to `count_max` tasks blocked on `key`, longest waiting first.
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;

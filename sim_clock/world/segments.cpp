@@ -82,11 +82,7 @@ int Segments::open(std::string_view path, int flags) noexcept {
     if (segments_count_ == segments_max) {
       world_.unsupported(fmt::format("more than {} shared memory objects in one execution", segments_max));
     }
-    segment = &segments_[segments_count_++];
-    segment->name.assign(name);
-    segment->object = world_.objects().add(name);
-    segment->bytes = 0;
-    segment->linked = true;
+    segment = &create(name);
   } else if ((flags & O_TRUNC) != 0) {
     segment->bytes = 0;
   }
@@ -95,6 +91,29 @@ int Segments::open(std::string_view path, int flags) noexcept {
                           .open = true,
                           .writable = (flags & O_ACCMODE) != O_RDONLY});
   return first_descriptor + static_cast<int>(descriptors_.size() - 1);
+}
+
+void Segments::leave(std::string_view path, std::span<const std::byte> content) {
+  const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);
+  if (name.empty() || name.find('/') != std::string_view::npos || find(name) != nullptr ||
+      segments_count_ == segments_max || content.size() > segment_bytes_max) {
+    world_.unsupported(fmt::format("a segment \"{}\" of {} bytes cannot be left over", path, content.size()));
+    return;
+  }
+  Segment& segment = create(name);
+  std::byte* const bytes = all_ + (index_of(segment) << window_shift);
+  std::memcpy(bytes, content.data(), content.size());
+  std::memset(bytes + content.size(), 0, page_end(content.size()) - content.size());
+  segment.bytes = content.size();
+}
+
+Segments::Segment& Segments::create(std::string_view name) {
+  Segment& segment = segments_[segments_count_++];
+  segment.name.assign(name);
+  segment.object = world_.objects().add(name);
+  segment.bytes = 0;
+  segment.linked = true;
+  return segment;
 }
 
 int Segments::unlink(std::string_view path) noexcept {
@@ -228,6 +247,10 @@ void Segments::access(const volatile void* address, std::size_t bytes, Operation
                             .offset = place.offset});
   const bool others_ran = world_.scheduler().points() != points_before + 1;
   if (others_ran) static_cast<void>(locate(address, kind));
+  if (world_.damages().are_possible()) [[unlikely]] {
+    const std::size_t index = segment_of_window(window_of(address));
+    world_.damages().choose(segments_[index].name, {all_ + (index << window_shift), segments_[index].bytes});
+  }
 }
 
 Segments::Place Segments::locate(const volatile void* address, OperationKind kind) noexcept {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,9 @@ class Segments {
   Segments(const Segments&) = delete;
   Segments& operator=(const Segments&) = delete;
   void reset() noexcept;
+
+  /// At set-up: an object that is there already, with this content.
+  void leave(std::string_view path, std::span<const std::byte> content);
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
   int open(std::string_view path, int flags) noexcept;
@@ -112,6 +116,8 @@ class Segments {
   /// Ends the execution as a crash if the running task cannot access the address so.
   [[nodiscard]] Place locate(const volatile void* address, OperationKind kind) noexcept;
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
+  /// There must be room for it.
+  Segment& create(std::string_view name);
   /// @return null for a descriptor that is closed or never was
   [[nodiscard]] Descriptor* find_descriptor(int descriptor) noexcept;
   [[nodiscard]] Segment* of_descriptor(int descriptor) noexcept;

@@ -109,7 +109,7 @@ int Semaphores::timed_wait(sem_t* handle, clockid_t clock, const timespec& deadl
     errno = EINVAL;
     return -1;
   }
-  return wait_until(handle, OperationKind::sem_timedwait, world_.to_sim_time(clock, deadline));
+  return wait_until(handle, OperationKind::sem_timedwait, world_.to_deadline(clock, deadline));
 }
 
 int Semaphores::post(sem_t* handle) noexcept {
@@ -118,9 +118,17 @@ int Semaphores::post(sem_t* handle) noexcept {
     errno = EOVERFLOW;
     return -1;
   }
+  if (world_.faults().strikes(FaultKind::lost_post)) [[unlikely]]
+    return 0;
+  add_one(semaphore);
+  if (semaphore.value != value_max && world_.faults().strikes(FaultKind::doubled_post)) [[unlikely]]
+    add_one(semaphore);
+  return 0;
+}
+
+void Semaphores::add_one(Semaphore& semaphore) noexcept {
   ++semaphore.value;
   world_.scheduler().wake(key_of(semaphore), 1);
-  return 0;
 }
 
 int Semaphores::value(sem_t* handle, int& into) noexcept {
@@ -128,8 +136,12 @@ int Semaphores::value(sem_t* handle, int& into) noexcept {
   return 0;
 }
 
-int Semaphores::wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept {
+int Semaphores::wait_until(sem_t* handle, OperationKind kind, Deadline deadline) noexcept {
   Semaphore& semaphore = arrive_at(handle, kind);
+  if (semaphore.value == 0 && world_.faults().strikes(FaultKind::interrupt)) [[unlikely]] {
+    errno = EINTR;
+    return -1;
+  }
   while (semaphore.value == 0) {
     if (world_.scheduler().block(key_of(semaphore), deadline) == Scheduler::Wake::timed_out &&
         semaphore.value == 0) {
@@ -139,6 +151,15 @@ int Semaphores::wait_until(sem_t* handle, OperationKind kind, SimTime deadline) 
   }
   --semaphore.value;
   return 0;
+}
+
+void Semaphores::leave(std::string_view path, unsigned value) {
+  const auto name = plain_name(path);
+  if (!name || find(*name) != nullptr || value > value_max || count_ == semaphores_max) {
+    world_.unsupported(fmt::format("a semaphore \"{}\" with value {} cannot be left over", path, value));
+    return;
+  }
+  create(*name, *name, value);
 }
 
 sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, unsigned value) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/handle.hpp"
 #include "sim_clock/world/operation.hpp"
 #include "sim_clock/world/task.hpp"
@@ -33,6 +33,9 @@ class Semaphores {
 
   explicit Semaphores(World& world) noexcept : world_(world) {}
   void reset() noexcept { count_ = 0; }
+
+  /// At set-up: a named semaphore that is there already.
+  void leave(std::string_view path, unsigned value);
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
   sem_t* open(std::string_view path, int flags, unsigned value) noexcept;
@@ -63,8 +66,9 @@ class Semaphores {
   Semaphore& resolve(sem_t* handle, OperationKind kind) noexcept;
   /// resolve(), scheduling point, and resolve() again: the semaphore may have gone meanwhile.
   Semaphore& arrive_at(sem_t* handle, OperationKind kind) noexcept;
+  void add_one(Semaphore& semaphore) noexcept;
   [[nodiscard]] static WaitKey key_of(const Semaphore& semaphore) noexcept;
-  int wait_until(sem_t* handle, OperationKind kind, SimTime deadline) noexcept;
+  int wait_until(sem_t* handle, OperationKind kind, Deadline deadline) noexcept;
 
   World& world_;
   static inline std::array<sem_t, semaphores_max> handles_{};  // what open() returns, by index

@@ -48,12 +48,13 @@ struct Task {
   std::uint32_t steps_since_look = 0;
   bool update_failed = false;         ///< its last compare-and-exchange found another value
   SimTime deadline = SimTime::max();  ///< while blocked
-  int priority = 0;                   ///< of SCHED_FIFO and SCHED_RR, 1 to 99; 0: none
-  int effective_priority = 0;         ///< with what is lent by those who wait for its locks
-  bool time_sharing = false;          ///< SCHED_RR
-  TaskId lends_to = 0;                ///< while blocked: the owner that has this task's priority; or no_task
-  std::uint64_t ready_since = 0;      ///< while runnable: orders those of one priority
-  std::string name;                   ///< "process/task"
+  bool deadline_on_wall_clock = false;
+  int priority = 0;               ///< of SCHED_FIFO and SCHED_RR, 1 to 99; 0: none
+  int effective_priority = 0;     ///< with what is lent by those who wait for its locks
+  bool time_sharing = false;      ///< SCHED_RR
+  TaskId lends_to = 0;            ///< while blocked: the owner that has this task's priority; or no_task
+  std::uint64_t ready_since = 0;  ///< while runnable: orders those of one priority
+  std::string name;               ///< "process/task"
 
   std::function<void()> body;
   void* result = nullptr;  ///< what a pthread start routine returned

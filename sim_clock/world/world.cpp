@@ -3,6 +3,8 @@
 #include <sys/single_threaded.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -127,6 +129,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   static std::uint64_t executions_ever = 0;  // of all worlds
   execution_number_ = execution_number_mark << execution_number_bits | ++executions_ever;
   random_draws_count_ = 0;
+  wall_clock_ahead_ = wall_clock_epoch;
   in_execution = this;
   scheduler_.reset(strategy, listener);
   objects_.reset();
@@ -134,6 +137,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   semaphores_.reset();
   mutexes_.reset();
   faults_.reset();
+  damages_.reset();
   processes_count_ = 0;
 }
 
@@ -142,31 +146,70 @@ void World::unsupported(std::string what) {
   scheduler_.fail(OutcomeKind::unsupported, std::move(what));
 }
 
-SimTime World::to_sim_time(clockid_t clock, const timespec& time) const noexcept {
+void World::grant(FaultKind kind, unsigned times) {
+  if (kind == FaultKind::crash || kind == FaultKind::bit_flip || kind == FaultKind::foreign_write) {
+    unsupported(fmt::format("{} is not granted to a whole world: see Process::may_crash and World::grant_in",
+                            to_string(kind)));
+    return;
+  }
+  faults_.grant(kind, times);
+}
+
+void World::grant_in(FaultKind kind, std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
+                     unsigned times) {
+  if (kind != FaultKind::bit_flip && kind != FaultKind::foreign_write) {
+    unsupported(fmt::format("{} does not strike in a segment", to_string(kind)));
+    return;
+  }
+  damages_.grant(kind, segment, offset, bytes, times);
+}
+
+Deadline World::to_deadline(clockid_t clock, const timespec& time) noexcept {
   // A deadline before the world's begin is simply due; one beyond the clock's range never comes.
   constexpr std::int64_t seconds_max = VirtualClock::never.count() / 1'000'000'000 - 1;
   if (time.tv_sec > seconds_max) return VirtualClock::never;
   if (time.tv_sec < 0) return SimTime{0};
-  const SimTime since_epoch = std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
-  return clock == CLOCK_REALTIME ? std::max(since_epoch - wall_clock_epoch, SimTime{0}) : since_epoch;
+  const SimTime since_begin = std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+  return clock == CLOCK_REALTIME ? Deadline::on_wall_clock_at(since_begin) : Deadline{since_begin};
 }
 
 timespec World::read_clock(clockid_t clock) noexcept {
   scheduler_.clock_was_read();
   scheduler_.point({.kind = OperationKind::clock_read});
   SimTime time = now();
-  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI)
-    time += wall_clock_epoch;
+  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI) {
+    choose_clock_step();
+    time += wall_clock_ahead_;
+  }
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   return {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()};
 }
 
-void World::sleep_until(SimTime deadline) noexcept {
+SimTime World::sleep_until(Deadline deadline) noexcept {
   scheduler_.point({.kind = OperationKind::sleep});
-  while (now() < deadline) {
-    constexpr WaitKey nobody_wakes = 0;
-    scheduler_.block(nobody_wakes, deadline);
+  constexpr WaitKey nobody_wakes = 0;
+  if (now() < sim_time_of(deadline)) {
+    constexpr std::size_t ways = 2;  // at once, and half-way
+    if (const std::size_t way = faults_.strike(FaultKind::interrupt, ways); way != 0) {
+      if (way == 2) {
+        scheduler_.block(nobody_wakes, now() + (sim_time_of(deadline) - now()) / 2);
+      }
+      return std::max(sim_time_of(deadline) - now(), SimTime{1});
+    }
   }
+  while (now() < sim_time_of(deadline)) scheduler_.block(nobody_wakes, deadline);
+  return SimTime{0};
+}
+
+void World::choose_clock_step() noexcept {
+  using namespace std::chrono_literals;
+  constexpr std::array<SimTime, 8> steps{1s, 1min, 1h, 24h, -1s, -1min, -1h, -24h};
+  const std::size_t variant = faults_.strike(FaultKind::clock_step, steps.size());
+  if (variant == 0) return;
+  const SimTime step = steps[variant - 1];
+  note([&] { return fmt::format("the wall clock is set by {} s", step / 1s); });
+  wall_clock_ahead_ += step;
+  scheduler_.wall_clock_was_stepped(step);
 }
 
 }  // namespace ltsim

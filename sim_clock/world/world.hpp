@@ -13,15 +13,20 @@
 // it; the world itself is pooled. One world exists at a time.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim_clock/check/outcome.hpp"
+#include "sim_clock/clock/deadline.hpp"
+#include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
@@ -96,8 +101,23 @@ class World {
   /// The process of that name; the first call makes it. At most Segments::processes_max.
   Process& process(std::string_view name);
 
-  /// Grants a fault: it may strike up to `times` times, wherever it can. Not for crashes (Process::may_crash).
-  void grant(FaultKind kind, unsigned times) noexcept { faults_.grant(kind, times); }
+  /// Grants a fault: it may strike up to `times` times, wherever it can. Not for crashes (Process::may_crash) and
+  /// for what damages a segment (grant_in).
+  void grant(FaultKind kind, unsigned times);
+  /// Grants damage to bytes of a segment: FaultKind::bit_flip, or FaultKind::foreign_write of one byte: zeroes,
+  /// ones, or one more than was there. It strikes at accesses to that segment, anywhere in it.
+  /// @param segment  name of the segment without '/'; it may be created later
+  void grant_in(FaultKind kind, std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
+                unsigned times);
+
+  /// At set-up: a shared memory object that somebody left there, in a life before.
+  /// @param name  as for shm_open(3)
+  void leave_segment(std::string_view name, std::span<const std::byte> content) {
+    segments_.leave(name, content);
+  }
+  /// At set-up: a named semaphore that somebody left there.
+  /// @param name  as for sem_open(3)
+  void leave_semaphore(std::string_view name, unsigned value) { semaphores_.leave(name, value); }
 
   /// Runs all tasks until they have finished or the execution has failed.
   void run() {
@@ -177,6 +197,7 @@ class World {
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
+  [[nodiscard]] Damages& damages() noexcept { return damages_; }
 
   [[nodiscard]] std::size_t processes_count() const noexcept { return processes_count_; }
   [[nodiscard]] Process& process(ProcessId id) noexcept { return *processes_[id]; }
@@ -202,14 +223,21 @@ class World {
   /// The code under test called something that this world does not simulate. Ends the execution.
   void unsupported(std::string what);
 
-  /// The wall clock is this much ahead of the monotonic one: 2026-01-01T00:00:00Z when the world begins.
+  /// When the world begins the wall clock is this much ahead of the monotonic one: 2026-01-01T00:00:00Z.
   static constexpr SimTime wall_clock_epoch = std::chrono::seconds{1'767'225'600};
-  /// An absolute time on a POSIX clock, as time of this world; all clocks but CLOCK_REALTIME begin with the
-  /// world.
-  [[nodiscard]] SimTime to_sim_time(clockid_t clock, const timespec& time) const noexcept;
+  /// An absolute time on a POSIX clock; all clocks but CLOCK_REALTIME begin with the world.
+  [[nodiscard]] static Deadline to_deadline(clockid_t clock, const timespec& time) noexcept;
+  /// @return  >= 0; VirtualClock::never: no limit
+  [[nodiscard]] SimTime sim_time_of(Deadline deadline) const noexcept {
+    if (!deadline.on_wall_clock || deadline.time == VirtualClock::never) return deadline.time;
+    return std::max(deadline.time - wall_clock_ahead_, SimTime{0});
+  }
   [[nodiscard]] timespec read_clock(clockid_t clock) noexcept;
   /// Blocks the running task until `deadline`.
-  void sleep_until(SimTime deadline) noexcept;
+  /// @return  what is left of the time if a fault has interrupted it, > 0; otherwise 0
+  [[nodiscard]] SimTime sleep_until(Deadline deadline) noexcept;
+  /// Asks whether the wall clock is set here, and sets it.
+  void choose_clock_step() noexcept;
 
   [[nodiscard]] static WaitKey join_key(TaskId task) noexcept { return std::uint64_t{1} << 60U | task; }
 
@@ -224,11 +252,13 @@ class World {
   Mutexes mutexes_{*this};
   Threads threads_{*this};
   Faults faults_{*this};
+  Damages damages_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
   std::uint64_t execution_number_ = 0;
   std::uint64_t random_draws_count_ = 0;
+  SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock
 };
 
 }  // namespace ltsim

@@ -75,6 +75,17 @@ TEST_P(ShapeTest, replays_to_the_same_trace_a_hundred_times) {
   }
 }
 
+TEST_P(ShapeTest, a_seed_gives_the_same_execution_again_whatever_was_learned_before) {
+  const ltsim::Scenario& scenario = *ltsim::find_scenario(GetParam().name);
+  ltsim::Explorer explorer{world()};
+  ltsim::SwarmStrategy strategy;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const std::uint64_t hash = explorer.execute(scenario, strategy, seed, nullptr);
+    ASSERT_EQ(explorer.execute(scenario, strategy, seed, nullptr), hash) << "seed " << seed;
+    strategy.learn({.points = world().scheduler().points()});
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Zoo, ShapeTest, testing::ValuesIn(ltsim::shapes()), [](const auto& tested) {
   std::string name{tested.param.name.substr(tested.param.name.find('/') + 1)};
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

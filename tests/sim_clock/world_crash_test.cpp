@@ -13,8 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim_clock/explore/explorer.hpp"
-#include "tests/sim_clock/calls_fixture.hpp"
+#include "tests/sim_clock/faults_fixture.hpp"
 
 namespace ltsim {
 namespace {
@@ -24,20 +23,12 @@ struct Shared {
   pthread_mutex_t mutex;
 };
 
-class CrashTest : public CallsTest {
+class CrashTest : public FaultsTest {
  protected:
-  /// Runs the scenario with these crashes, each "ANCHOR of PROCESS" as in a schedule, and otherwise by default.
-  static Outcome run_crashing(const std::vector<std::string>& crashes, void (*body)(World&)) {
-    std::string text = "ltsim schedule 1\nscenario test/crash\n";
-    for (const std::string& crash : crashes) text += "crash " + crash + "\n";
-    const auto schedule = parse_schedule(text);
-    EXPECT_TRUE(schedule) << schedule.error().reason;
-    if (!schedule) return {};
-    const ReplayReport report =
-        Explorer{world()}.replay(Scenario{"test/crash", "", body}, *schedule, nullptr);
-    EXPECT_FALSE(report.divergence) << report.divergence->deviation->anchor << ": "
-                                    << report.divergence->reason;
-    return report.outcome;
+  /// @param crashes  each "ANCHOR of PROCESS"
+  static Outcome run_crashing(std::vector<std::string> crashes, void (*body)(World&)) {
+    for (std::string& crash : crashes) crash.insert(0, "crash ");
+    return run_with(crashes, body);
   }
 
   /// A segment of one page, made anew or found, mapped for the process that calls.
@@ -434,37 +425,19 @@ void CrashTest::count_under_a_robust_mutex(World& world) {
 }
 
 TEST_F(CrashTest, equal_seeds_crash_alike_and_every_recorded_execution_replays) {
-  const Scenario scenario{"test/robust-counter", "", &count_under_a_robust_mutex};
-  Explorer explorer{world()};
-  RandomStrategy strategy;
   unsigned crashes = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const SignalGuard signals;
-    const std::uint64_t hash = explorer.execute(scenario, strategy, seed, nullptr);
-    ASSERT_EQ(world().scheduler().outcome(), Outcome{}) << seed;
+    const Failure recorded = record_and_replay(seed, &count_under_a_robust_mutex);
+    ASSERT_EQ(recorded.outcome, Outcome{}) << seed;
     const unsigned of_this = world().process("one").crashes() + world().process("two").crashes();
     ASSERT_LE(of_this, 2U) << seed;
     crashes += of_this;
-    const Failure recorded = explorer.record(scenario, strategy, seed);
-    ASSERT_EQ(recorded.trace_hash, hash) << seed;
-    const auto schedule = parse_schedule(to_string(recorded.schedule));
-    ASSERT_TRUE(schedule) << seed << ": " << schedule.error().reason;
-    ASSERT_EQ(schedule->deviations, recorded.schedule.deviations) << seed;
-    const ReplayReport replayed = explorer.replay(scenario, *schedule, nullptr);
-    ASSERT_FALSE(replayed.divergence) << seed << ": " << replayed.divergence->reason;
-    ASSERT_EQ(replayed.trace_hash, hash) << seed;
   }
   EXPECT_GT(crashes, 50U);
 }
 
 TEST_F(CrashTest, a_process_to_which_no_crash_is_granted_is_not_asked_for) {
-  class NeverAsked final : public DefaultStrategy {
-   public:
-    [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t /*variants*/) noexcept override {
-      ADD_FAILURE() << to_string(kind);
-      return 0;
-    }
-  } strategy;
+  NeverStrikes strategy;
   EXPECT_EQ(run_under(strategy, 1,
                       [](World& world) {
                         for (const char* const name : {"one", "two"})
