@@ -12,15 +12,18 @@ constexpr std::uint64_t drawn_bit = std::uint64_t{1} << 63U;
 SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
   priorities_.fill(0);
   next_lower_ = drawn_bit - 1;
-  std::size_t change_points = 0;  // d - 1
-  while (change_points < 5 && generator().below(3) != 0) ++change_points;
-  change_points_.begin(generator(), change_points);
+  things_.begin();
+  everywhere_ = generator().below(4) == 0;
+  std::size_t change_points_count = 0;  // d - 1
+  while (change_points_count < 5 && generator().below(3) != 0) ++change_points_count;
+  change_points().begin(generator(), change_points_count);
   return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
 void PctStrategy::learn(const ExecutionSummary& summary) noexcept {
   SamplingStrategy::learn(summary);
-  change_points_.learn();
+  things_.learn();
+  change_points().learn();
 }
 
 std::size_t PctStrategy::choose_task(const TaskChoice& choice) noexcept {
@@ -36,12 +39,15 @@ bool PctStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
   bool first = true;
   for_each_task(choice.runnable,
                 [&](TaskId task) { first = first && priority_of(clock) > priority_of(task); });
-  if (first && change_points_.pass() != 0) lower(clock);
+  if (first && change_points().pass() != 0) lower(clock);
   return first;
 }
 
-void PctStrategy::performs(TaskId task, const Operation& /*operation*/) noexcept {
-  if (change_points_.pass() != 0) lower(task);
+void PctStrategy::performs(TaskId task, const Operation& operation) noexcept {
+  const std::size_t thing = things_.thing_of(operation);
+  if (thing != SharedThings::none) things_.use(thing, task);
+  const bool counts = everywhere_ || (thing != SharedThings::none && things_.is_shared(thing));
+  if (counts && change_points().pass() != 0) lower(task);
 }
 
 std::uint64_t PctStrategy::priority_of(std::size_t task) noexcept {

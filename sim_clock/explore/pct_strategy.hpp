@@ -4,7 +4,8 @@
 // Source: Burckhardt, Kothari, Musuvathi, Nagarakatte, "A randomized scheduler with probabilistic guarantees of
 // finding bugs", ASPLOS 2010: with n tasks and k points a bug of depth d is found with probability at least
 // 1/(n k^(d-1)). k is estimated from the executions before; d is drawn for each execution from 1 to 6, small
-// ones more often. The clock is one of the tasks: a time-out fires early when the clock has a higher priority
+// ones more often. In three executions of four priorities change only before operations on things that several
+// tasks use (SharedThings). The clock is one of the tasks: a time-out fires early when the clock has a higher priority
 // than all who could run, and a falling task falls below the clock, too. A task that yields or polls falls, as
 // its source does with one that yields: what it waits for would never come.
 #pragma once
@@ -12,6 +13,7 @@
 #include <array>
 
 #include "sim_clock/explore/sampling_strategy.hpp"
+#include "sim_clock/explore/shared_things.hpp"
 
 namespace ltsim {
 
@@ -32,7 +34,13 @@ class PctStrategy final : public SamplingStrategy {
 
   static constexpr std::size_t clock = tasks_max;  // its place among the priorities
 
-  Occasions change_points_;
+  [[nodiscard]] Occasions& change_points() noexcept { return everywhere_ ? all_points_ : shared_points_; }
+
+  SharedThings things_;
+  bool everywhere_ = false;  // priorities change anywhere in this execution
+  // Where they change. The two kinds of executions have numbers of points of their own.
+  Occasions all_points_;
+  Occasions shared_points_;
   std::array<std::uint64_t, tasks_max + 1> priorities_{};  // 0: none drawn yet
   std::uint64_t next_lower_ =
       0;  // those who have fallen have priorities below all drawn ones, the last the lowest

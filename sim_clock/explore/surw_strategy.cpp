@@ -3,41 +3,32 @@
 #include <algorithm>
 
 namespace ltsim {
-namespace {
-
-/// Words of four bytes are told apart within a segment.
-std::uint64_t key_of(const Operation& operation) noexcept {
-  const std::uint64_t place = operation.object == 0 ? 0 : operation.offset / 4;
-  return std::uint64_t{is_memory_access(operation.kind)} << 63U | std::uint64_t{operation.object} << 32U |
-         place;
-}
-
-}  // namespace
 
 SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
-  things_count_ = things_learned_count_;
+  things_.begin();
   tasks_seen_ = tasks_learned_;
   interesting_ = draw_interesting();
   left_sum_ = 0;
   for (std::size_t task = 0; task < tasks_seen_; ++task) {
     left_[task] = expected_[interesting_][task];
     left_sum_ += left_[task];
-    for (std::size_t thing = 0; thing < things_count_; ++thing) passed_[thing][task] = 0;
+    for (std::size_t thing = 0; thing < things_.count(); ++thing) passed_[thing][task] = 0;
     passed_[everything][task] = 0;
   }
+  clock_left_ = 0;
+  const bool clock_takes_part = generator().below(2) == 0;
+  if (clock_takes_part) clock_left_ = std::uint64_t{1} << generator().below(7);
+  left_sum_ += clock_left_;
   next_ = draw_next();
-  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::bursts;
+  return clock_takes_part ? TimeMode::clock : TimeMode::silence;
 }
 
 std::size_t SurwStrategy::draw_interesting() noexcept {
-  if (things_count_ == 0 || generator().below(4) == 0) return everything;
-  // Things of one task only order nothing.
-  std::array<std::size_t, things_max> shared{};
+  if (generator().below(4) == 0) return everything;
+  std::array<std::size_t, SharedThings::things_max> shared{};
   std::uint32_t shared_count = 0;
-  for (std::size_t thing = 0; thing < things_count_; ++thing) {
-    std::size_t users = 0;
-    for (std::size_t task = 0; task < tasks_seen_; ++task) users += expected_[thing][task] != 0 ? 1 : 0;
-    if (users > 1) shared[shared_count++] = thing;
+  for (std::size_t thing = 0; thing < things_.count(); ++thing) {
+    if (things_.is_shared(thing)) shared[shared_count++] = thing;
   }
   return shared_count == 0 ? everything : shared[generator().below(shared_count)];
 }
@@ -49,7 +40,7 @@ TaskId SurwStrategy::draw_next() noexcept {
     if (place < left_[task]) return static_cast<TaskId>(task);
     place -= left_[task];
   }
-  return nobody;
+  return the_clock;
 }
 
 void SurwStrategy::learn(const ExecutionSummary& summary) noexcept {
@@ -60,9 +51,9 @@ void SurwStrategy::learn(const ExecutionSummary& summary) noexcept {
       expected = std::max(passed_[thing][task], expected - (expected + 15) / 16);
     }
   };
-  for (std::size_t thing = 0; thing < things_count_; ++thing) learn_one(thing);
+  for (std::size_t thing = 0; thing < things_.count(); ++thing) learn_one(thing);
   learn_one(everything);
-  things_learned_count_ = things_count_;
+  things_.learn();
   tasks_learned_ = tasks_seen_;
 }
 
@@ -78,6 +69,19 @@ std::size_t SurwStrategy::choose_task(const TaskChoice& choice) noexcept {
   return candidates[count == 1 ? 0 : generator().below(count)];
 }
 
+bool SurwStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
+  if (next_ == nobody || !is_interesting(choice.pending[choice.running])) return false;
+  if (next_ != the_clock) {
+    // Whose turn it is sleeps: time goes on.
+    const bool can_run = (choice.runnable[next_ / 64] >> (next_ % 64) & 1U) != 0;
+    if (can_run || clock_left_ == 0) return false;
+  }
+  --clock_left_;
+  --left_sum_;
+  if (next_ == the_clock) next_ = draw_next();
+  return true;
+}
+
 void SurwStrategy::performs(TaskId task, const Operation& operation) noexcept {
   if (task >= tasks_seen_) {
     for (std::size_t fresh = tasks_seen_; fresh <= task; ++fresh) {
@@ -87,8 +91,9 @@ void SurwStrategy::performs(TaskId task, const Operation& operation) noexcept {
     }
     tasks_seen_ = task + std::size_t{1};
   }
-  const std::size_t thing = thing_of(operation);
-  if (thing == everything) return;
+  const std::size_t thing = things_.thing_of(operation);
+  if (thing == SharedThings::none) return;
+  things_.use(thing, task);
   ++passed_[thing][task];
   ++passed_[everything][task];
   if (interesting_ != everything && interesting_ != thing) return;
@@ -99,22 +104,9 @@ void SurwStrategy::performs(TaskId task, const Operation& operation) noexcept {
   next_ = draw_next();
 }
 
-std::size_t SurwStrategy::thing_of(const Operation& operation) noexcept {
-  if (operation.object == 0 && !is_memory_access(operation.kind)) return everything;
-  const std::uint64_t key = key_of(operation);
-  for (std::size_t thing = 0; thing < things_count_; ++thing) {
-    if (keys_[thing] == key) return thing;
-  }
-  if (things_count_ == things_max) return things_max - 1;
-  keys_[things_count_] = key;
-  passed_[things_count_].fill(0);
-  expected_[things_count_].fill(0);
-  return things_count_++;
-}
-
 bool SurwStrategy::is_interesting(const Operation& operation) noexcept {
-  const std::size_t thing = thing_of(operation);
-  return thing != everything && (interesting_ == everything || interesting_ == thing);
+  const std::size_t thing = things_.thing_of(operation);
+  return thing != SharedThings::none && (interesting_ == everything || interesting_ == thing);
 }
 
 }  // namespace ltsim

@@ -5,13 +5,15 @@
 // task that is to do the next interesting operation is drawn with a probability proportional to the number of
 // interesting operations that it has left, all their interleavings are equally likely. The others wait before
 // their interesting operations until that task has done its own. The numbers are learned from the executions
-// before. Interesting is one thing (a semaphore, a mutex, a word of a segment, all atomics outside of
-// segments) that two tasks use, or, in one execution of four, everything.
+// before. Interesting is one thing (SharedThings) that several tasks use, or, in one execution of four,
+// everything. In every second execution the clock takes part as a task with 1 to 64 operations, each of which
+// goes on to the next timer.
 #pragma once
 
 #include <array>
 
 #include "sim_clock/explore/sampling_strategy.hpp"
+#include "sim_clock/explore/shared_things.hpp"
 
 namespace ltsim {
 
@@ -24,30 +26,26 @@ class SurwStrategy final : public SamplingStrategy {
   void performs(TaskId task, const Operation& operation) noexcept override;
 
  private:
-  /// Shared things that are told apart; those beyond count as the last.
-  static constexpr std::size_t things_max = 32;
-  static constexpr std::size_t everything = things_max;
+  static constexpr std::size_t everything = SharedThings::things_max;
   static constexpr TaskId nobody = VirtualClock::no_task;
+  static constexpr TaskId the_clock = nobody - 1;
 
   using Counts = std::array<std::uint32_t, tasks_max>;  // by task number
 
   TimeMode begin() noexcept override;
+  [[nodiscard]] bool clock_goes_first(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t draw_interesting() noexcept;
   [[nodiscard]] TaskId draw_next() noexcept;
-  /// Which thing the operation acts on, from 0; `everything` if on none.
-  [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept;
   [[nodiscard]] bool is_interesting(const Operation& operation) noexcept;
 
-  std::array<std::uint64_t, things_max> keys_{};
-  std::size_t things_count_ = 0;
-  std::size_t tasks_seen_ = 0;  // all have smaller numbers
-  // Of both, those of executions that count: one that is run again begins with no more.
-  std::size_t things_learned_count_ = 0;
-  std::size_t tasks_learned_ = 0;
-  std::array<Counts, things_max + 1> passed_{};    // in this execution; the last: of everything
-  std::array<Counts, things_max + 1> expected_{};  // in an execution
+  SharedThings things_;
+  std::size_t tasks_seen_ = 0;     // all have smaller numbers
+  std::size_t tasks_learned_ = 0;  // of executions that count: one that is run again begins with no more
+  std::array<Counts, everything + 1> passed_{};    // in this execution; the last: of everything
+  std::array<Counts, everything + 1> expected_{};  // in an execution
   Counts left_{};                                  // of interesting operations
-  std::uint64_t left_sum_ = 0;
+  std::uint64_t clock_left_ = 0;  // firings of timers that count as interesting operations of the clock
+  std::uint64_t left_sum_ = 0;    // the clock's included
   std::size_t interesting_ = everything;
   TaskId next_ = nobody;  // does the next interesting operation
 };
