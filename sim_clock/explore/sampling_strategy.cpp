@@ -34,6 +34,7 @@ void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
 
 SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
   if (choice.until_next_timer != VirtualClock::never) period_ = std::max(choice.until_next_timer, SimTime{1});
+  if (!choice.running_can_be_held_up && time_mode_ != TimeMode::clock) return {};
   switch (time_mode_) {
     case TimeMode::bursts:
       return generator_.bits(burst_bits_) == 0 ? draw_slow_moment() : SlowMoment{};

@@ -1,5 +1,7 @@
 #include "sim_clock/explore/shared_things.hpp"
 
+#include <algorithm>
+
 #include "sim_clock/explore/random_generator.hpp"
 
 namespace ltsim {
@@ -20,6 +22,7 @@ std::uint64_t key_of(const Operation& operation) noexcept {
 }  // namespace
 
 void SharedThings::begin() noexcept {
+  std::copy_n(learned_users_.begin(), learned_count_, users_.begin());
   if (count_ == learned_count_) return;
   count_ = learned_count_;
   slots_.fill(0);
@@ -28,6 +31,11 @@ void SharedThings::begin() noexcept {
     while (slots_[slot] != 0) slot = (slot + 1) % slots_count;
     slots_[slot] = static_cast<std::uint8_t>(thing + 1);
   }
+}
+
+void SharedThings::learn() noexcept {
+  learned_count_ = count_;
+  std::copy_n(users_.begin(), count_, learned_users_.begin());
 }
 
 std::size_t SharedThings::thing_of(const Operation& operation) noexcept {
@@ -41,6 +49,7 @@ std::size_t SharedThings::thing_of(const Operation& operation) noexcept {
   if (count_ == things_max) return things_max - 1;
   keys_[count_] = key;
   users_[count_] = nobody;
+  learned_users_[count_] = nobody;
   slots_[slot] = static_cast<std::uint8_t>(count_ + 1);
   return count_++;
 }

@@ -24,19 +24,20 @@ class SharedThings {
 
   /// An execution begins: what was seen since the last learn() is forgotten.
   void begin() noexcept;
-  void learn() noexcept { learned_count_ = count_; }
+  void learn() noexcept;
 
   /// @return 0 to count() - 1, or none
   [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept;
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
-  /// `task` uses the thing.
+  /// `task` uses the thing. Known from the next learn() on: an execution that is run again knows no more than
+  /// at its first run.
   void use(std::size_t thing, TaskId task) noexcept {
     if (users_[thing] == nobody) users_[thing] = task;
     if (users_[thing] != task) users_[thing] = several;
   }
-  /// Whether several tasks use it, as far as is known.
-  [[nodiscard]] bool is_shared(std::size_t thing) const noexcept { return users_[thing] == several; }
+  /// Whether several tasks used it in the executions that were learned from.
+  [[nodiscard]] bool is_shared(std::size_t thing) const noexcept { return learned_users_[thing] == several; }
 
  private:
   static constexpr TaskId nobody = VirtualClock::no_task;
@@ -45,6 +46,7 @@ class SharedThings {
 
   std::array<std::uint64_t, things_max> keys_{};
   std::array<TaskId, things_max> users_{};
+  std::array<TaskId, things_max> learned_users_{};
   std::array<std::uint8_t, slots_count> slots_{};  // a hash table: number of the thing plus one; 0: free
   std::size_t count_ = 0;
   std::size_t learned_count_ = 0;

@@ -1,10 +1,13 @@
 // A random walk with silences: one to three times a task gets no processor for long, while the others, and
 // time, go on.
 //
-// A silence begins before an operation that matters, drawn uniformly from those of the execution, and lasts for a number of events
-// drawn log-uniformly, up to four times the length of an execution; an event is a step of another task or, when
-// nobody else can run, the firing of a timer. So one silence spans any number of time-outs of the peer, which
-// no number of coin flips would. Besides there are the slow moments of SamplingStrategy, measured in time.
+// A silence begins before an operation that matters, drawn uniformly from those of the execution, and lasts
+// until the others have
+//   changed something   1 to 63 times: stored, posted, unlocked; or
+//   passed events       up to eight times the length of an execution: steps, or the firing of a timer when
+//                       nobody else can run;
+// both drawn log-uniformly. So one silence spans any number of looks or of time-outs of the peer, which no number
+// of coin flips would. Besides there are the slow moments of SamplingStrategy, measured in time.
 #pragma once
 
 #include "sim_clock/explore/sampling_strategy.hpp"
@@ -17,14 +20,16 @@ class StallStrategy final : public SamplingStrategy {
   [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
   void learn(const ExecutionSummary& summary) noexcept override;
   [[nodiscard]] bool follows_steps() const noexcept override { return true; }
-  void performs(TaskId task, const Operation& operation) noexcept override { note_use(task, operation); }
+  void performs(TaskId task, const Operation& operation) noexcept override;
 
  private:
+  static constexpr TaskId nobody = VirtualClock::no_task;
+
+  void begin_silence(TaskId task) noexcept;
+  void count_down() noexcept;
+
   TimeMode begin() noexcept override;
   [[nodiscard]] bool clock_goes_first(const SlowMomentChoice& choice) noexcept override;
-
-  /// Counts one event. @return whether the silence goes on
-  [[nodiscard]] bool pass_event() noexcept;
 
   [[nodiscard]] Occasions& silences() noexcept {
     return all_matters() ? silences_where_all_matters_ : silences_;
@@ -32,8 +37,9 @@ class StallStrategy final : public SamplingStrategy {
 
   Occasions silences_;
   Occasions silences_where_all_matters_;
-  TaskId silent_ = 0;
-  std::uint64_t events_left_ = 0;  // of the silence; 0: nobody is silent
+  TaskId silent_ = nobody;
+  bool counts_changes_ = false;  // otherwise events
+  std::uint64_t left_ = 0;       // of what ends the silence
 };
 
 }  // namespace ltsim

@@ -39,8 +39,11 @@ struct SlowMoment {
 /// What there is to know where time may pass.
 struct SlowMomentChoice {
   SimTime until_next_timer = VirtualClock::never;  ///< >= 0; `never` when no timer is armed
-  TaskId running = 0;
-  std::span<const std::uint64_t> runnable;  ///< one bit a task, 64 to a word; the running one is among them
+  TaskId running = 0;                              ///< the task that ran up to here
+  /// Whether it is about to take a step, and others_go_on is a possible answer; otherwise it has just stopped
+  /// being able to run, and only time for all may pass.
+  bool running_can_be_held_up = true;
+  std::span<const std::uint64_t> runnable;  ///< one bit a task, 64 to a word; never empty
   std::span<const Operation> pending;       ///< by task number: what each will do next
 };
 
@@ -68,8 +71,9 @@ class Strategy {
   [[nodiscard]] virtual std::size_t choose_task(const TaskChoice& choice) noexcept = 0;
 
   /// Whether the task that is about to take a step is held up first: its processor, or the whole machine, is
-  /// slow. So a time-out may fire whose peer is merely late. Only asked while time matters to somebody, and
-  /// asked again after the whole machine was slow, until it is not.
+  /// slow. So a time-out may fire whose peer is merely late. Also asked where a task has stopped being able to
+  /// run, and others can. Only asked while time matters to somebody, and asked again after the whole machine was
+  /// slow, until it is not.
   /// @return  the default is no slow moment
   [[nodiscard]] virtual SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept = 0;
 

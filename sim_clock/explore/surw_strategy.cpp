@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim_clock/explore/task_set.hpp"
+
 namespace ltsim {
 
 SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
@@ -68,7 +70,12 @@ std::size_t SurwStrategy::choose_task(const TaskChoice& choice) noexcept {
 }
 
 bool SurwStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
-  if (next_ == nobody || !is_interesting(choice.pending[choice.running])) return false;
+  if (next_ == nobody) return false;
+  bool all_wait = true;
+  for_each_task(choice.runnable, [&](TaskId task) {
+    all_wait = all_wait && task != next_ && is_interesting(choice.pending[task]);
+  });
+  if (!all_wait) return false;
   if (next_ != the_clock) {
     // Whose turn it is sleeps: time goes on.
     const bool can_run = (choice.runnable[next_ / 64] >> (next_ % 64) & 1U) != 0;

@@ -9,8 +9,8 @@ void SwarmStrategy::begin_execution(std::uint64_t seed) noexcept {
   // Not the generator of the member: what it draws must not depend on how it was drawn itself.
   RandomGenerator generator{splitmix64(seed)};
   const std::uint32_t yields = std::accumulate(yields_.begin(), yields_.end(), std::uint32_t{0});
-  if (yields == 0 || generator.below(2) == 0) {
-    drawn_ = generator.below(members_count);
+  if (yields == 0 || executions_ % 2 == 0) {
+    drawn_ = cycle[(yields == 0 ? executions_ : executions_ / 2) % cycle.size()];
   } else {
     std::uint32_t place = generator.below(yields);
     for (drawn_ = 0; place >= yields_[drawn_]; ++drawn_) place -= yields_[drawn_];
@@ -20,6 +20,7 @@ void SwarmStrategy::begin_execution(std::uint64_t seed) noexcept {
 }
 
 void SwarmStrategy::learn(const ExecutionSummary& summary) noexcept {
+  ++executions_;
   current_->learn(summary);
   constexpr std::uint32_t worth_of_a_failure = 4096;
   constexpr std::uint64_t most_at_once = 1024;

@@ -328,6 +328,12 @@ Task* Scheduler::next_after_stop() noexcept {
   if (unfinished_count_ == 0) return nullptr;
   wake_due();
   while (runnable_count_ == 0) nobody_can_run();
+  if (clock_.any_armed()) let_time_pass(false);
+  return next_runnable();
+}
+
+Task* Scheduler::next_runnable() noexcept {
+  while (runnable_count_ == 0) nobody_can_run();
   const auto options = candidates(0);
   return tasks_[options.size() == 1 ? options[0] : choose_task(options, running_->id, false)].get();
 }
@@ -356,30 +362,35 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
                                                              .pending = pending_})]);
 }
 
-void Scheduler::choose_slow_moment() noexcept {
+SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
   if (in_fair_tail()) [[unlikely]]
-    return;
-  SlowMoment moment;
+    return {};
   for (unsigned i = 0; i < slow_moments_max; ++i) {
     ++decisions_;
     const SimTime next = clock_.next_deadline();
-    moment =
+    const SlowMoment moment =
         strategy_->slow_moment({.until_next_timer = next == VirtualClock::never ? next : next - clock_.now(),
                                 .running = running_->id,
+                                .running_can_be_held_up = running_can_be_held_up,
                                 .runnable = runnable_,
                                 .pending = pending_});
-    if (moment.duration == SimTime{0}) return;
-    if (moment.others_go_on) break;
+    if (moment.duration == SimTime{0}) return {};
+    if (moment.others_go_on) return moment;
     clock_.pass(moment.duration);
     wake_due();
   }
-  if (!moment.others_go_on) return;
+  return {};
+}
+
+void Scheduler::choose_slow_moment() noexcept {
+  const SlowMoment moment = let_time_pass(true);
+  if (moment.duration == SimTime{0}) return;
   Task& self = *running_;
   self.state = Task::State::stalled;
   ++stalled_count_;
   make_unrunnable(self);
   clock_.arm(clock_.now() + moment.duration, self.id);
-  Task* const other = next_after_stop();
+  Task* const other = next_runnable();
   if (other != &self) switch_to(*other);
 }
 

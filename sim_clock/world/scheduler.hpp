@@ -136,9 +136,14 @@ class Scheduler {
   void leave(Task& self) noexcept;
   /// The next task after the running one stopped being runnable; null when all have finished.
   Task* next_after_stop() noexcept;
+  /// The next task, of which there is one.
+  Task* next_runnable() noexcept;
   void nobody_can_run() noexcept;
   TaskId choose_task(std::span<const std::uint64_t> options, TaskId running, bool running_gives_way) noexcept;
   void choose_slow_moment() noexcept;
+  /// Asks how slow the machine is, and lets time pass for all as long as it is slow.
+  /// @return a slow moment of the running task alone that is to follow; duration 0: none
+  SlowMoment let_time_pass(bool running_can_be_held_up) noexcept;
   /// Whether the task waits for others, though it can run.
   [[nodiscard]] static bool gives_way(Task& task, const Operation& operation) noexcept;
   /// An execution that will not end is given a fair end: tasks take turns, time and faults stand still. What
