@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <semaphore.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -188,7 +189,9 @@ TEST_F(CrashTest, its_mappings_and_descriptors_are_gone_and_do_not_add_up_over_i
                   victim.start("main", [&victim, &world] {
                     for (std::size_t i = 0; i < Segments::mappings_max; ++i)
                       world.require(map_segment() != MAP_FAILED, "mapped");
-                    world.require(close(Segments::first_descriptor) == (victim.incarnation() == 1 ? 0 : -1),
+                    struct stat status{};
+                    const unsigned victim_lives = victim.incarnation();
+                    world.require(fstat(Segments::first_descriptor, &status) == (victim_lives == 1 ? 0 : -1),
                                   "a descriptor of an earlier life is closed");
                     std::this_thread::yield();
                   });
@@ -211,8 +214,9 @@ TEST_F(CrashTest, a_process_starts_again_so_much_later_under_another_name_and_nu
                      victim.start("main", [&] {
                        begins.push_back(world.now());
                        pids.push_back(getpid());
-                       if (victim.incarnation() == 1) std::this_thread::yield();
                        std::thread{[] { usleep(10); }}.join();
+                       if (victim.incarnation() == 1) std::this_thread::yield();
+
                        sem_wait(sem_open("/s", O_CREAT, 0600, 0U));
                      });
                      world.process("witness").start("main", [&world, &victim] {
@@ -227,6 +231,9 @@ TEST_F(CrashTest, a_process_starts_again_so_much_later_under_another_name_and_nu
                      });
                      world.run();
                      world.require(begins.size() == 2 && pids[0] != pids[1], "two lives");
+                     const auto last = static_cast<TaskId>(world.scheduler().tasks_count() - 1);
+                     world.require(world.scheduler().task(last).name == "victim@2/thread-1",
+                                   "threads count anew");
                      world.require(
                          begins.back() - begins.front() >= 5ms && begins.back() - begins.front() < 5ms + 20us,
                          "5 ms later");
@@ -282,6 +289,22 @@ TEST_F(CrashTest, a_process_that_has_ended_or_waits_for_its_restart_cannot_be_ki
     ASSERT_TRUE(report.divergence) << step;
     EXPECT_EQ(report.divergence->deviation, &schedule->deviations[1]);
   }
+}
+
+TEST_F(CrashTest, a_process_is_killed_no_more_often_than_granted) {
+  const Schedule schedule = schedule_of({"crash victim/main before yield - #1 of victim",
+                                         "crash victim@2/main before yield - #1 of victim",
+                                         "crash victim@3/main before yield - #1 of victim"});
+  const ReplayReport report = replay(schedule, [](World& world) {
+    world.process("victim").may_crash({.times = 2, .restart_after = 1ms});
+    world.process("victim").start("main", [] { std::this_thread::yield(); });
+    world.process("other").may_crash({.times = 1, .restart_after = 1ms});
+    world.process("other").start("main", [] { usleep(10'000); });
+    world.run();
+  });
+  EXPECT_EQ(report.outcome, Outcome{});
+  ASSERT_TRUE(report.divergence);
+  EXPECT_EQ(report.divergence->deviation, &schedule.deviations[2]);
 }
 
 // --- locks ---

@@ -100,6 +100,18 @@ TEST_F(FaultsTest, a_fault_strikes_no_more_often_than_granted) {
   EXPECT_EQ(report.divergence->deviation, &schedule.deviations[2]);
 }
 
+TEST_F(FaultsTest, a_fault_is_anchored_to_the_step_it_strikes_also_where_others_ran_before_that_step) {
+  EXPECT_EQ(run_with({"switch p/main before sem_post s #1 to p/other",
+                      "fault p/main before sem_post s #1 lost-post 1"},
+                     [](World& world) {
+                       world.grant(FaultKind::lost_post, 1);
+                       world.process("p").start("main", [] { sem_post(open_semaphore()); });
+                       world.process("p").start("other", [] { std::this_thread::yield(); });
+                       world.run();
+                     }),
+            Outcome{});
+}
+
 TEST_F(FaultsTest, waiting_for_a_semaphore_is_interrupted_only_where_it_would_block) {
   EXPECT_EQ(run_with({"fault p/main before sem_wait s #2 interrupt 1",
                       "fault p/main before sem_timedwait s #1 interrupt 1"},
@@ -193,7 +205,9 @@ TEST_F(FaultsTest, a_wait_for_a_condition_wakes_for_nothing_with_its_mutex_held)
                          std::unique_lock lock{mutex};
                          condition.wait(lock);
                          world.require(!another_could_lock(mutex), "held again");
-                         world.require(condition.wait_for(lock, 1s) == std::cv_status::no_timeout,
+                         const timespec deadline = in(1s, CLOCK_REALTIME);
+                         world.require(pthread_cond_timedwait(condition.native_handle(),
+                                                              mutex.native_handle(), &deadline) == 0,
                                        "and this is no time-out");
                          world.require(world.now() < 1ms, "at once");
                        });
