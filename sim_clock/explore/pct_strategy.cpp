@@ -12,6 +12,8 @@ constexpr std::uint64_t drawn_bit = std::uint64_t{1} << 63U;
 SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
   priorities_.fill(0);
   next_lower_ = drawn_bit - 1;
+  things_.begin();
+  everywhere_ = generator().below(4) == 0;
   std::size_t change_points_count = 0;  // d - 1
   while (change_points_count < 5 && generator().below(3) != 0) ++change_points_count;
   change_points().begin(generator(), change_points_count);
@@ -20,6 +22,7 @@ SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
 
 void PctStrategy::learn(const ExecutionSummary& summary) noexcept {
   SamplingStrategy::learn(summary);
+  things_.learn();
   change_points().learn();
 }
 
@@ -41,8 +44,10 @@ bool PctStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
 }
 
 void PctStrategy::performs(TaskId task, const Operation& operation) noexcept {
-  note_use(task, operation);
-  if (matters(operation) && change_points().pass() != 0) lower(task);
+  const std::size_t thing = things_.thing_of(operation);
+  if (thing != SharedThings::none) things_.use(thing, task);
+  const bool counts = everywhere_ || (thing != SharedThings::none && things_.is_shared(thing));
+  if (counts && change_points().pass() != 0) lower(task);
 }
 
 std::uint64_t PctStrategy::priority_of(std::size_t task) noexcept {

@@ -13,6 +13,7 @@
 #include <array>
 
 #include "sim_clock/explore/sampling_strategy.hpp"
+#include "sim_clock/explore/shared_things.hpp"
 
 namespace ltsim {
 
@@ -33,12 +34,13 @@ class PctStrategy final : public SamplingStrategy {
 
   static constexpr std::size_t clock = tasks_max;  // its place among the priorities
 
-  [[nodiscard]] Occasions& change_points() noexcept {
-    return all_matters() ? change_points_where_all_matters_ : change_points_;
-  }
+  [[nodiscard]] Occasions& change_points() noexcept { return everywhere_ ? all_points_ : shared_points_; }
 
-  Occasions change_points_;
-  Occasions change_points_where_all_matters_;
+  SharedThings things_;
+  bool everywhere_ = false;  // priorities change anywhere in this execution
+  // Where they change. The two kinds of executions have numbers of points of their own.
+  Occasions all_points_;
+  Occasions shared_points_;
   std::array<std::uint64_t, tasks_max + 1> priorities_{};  // 0: none drawn yet
   std::uint64_t next_lower_ =
       0;  // those who have fallen have priorities below all drawn ones, the last the lowest

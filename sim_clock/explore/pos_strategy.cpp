@@ -41,7 +41,6 @@ void PosStrategy::performs(TaskId task, const Operation& operation) noexcept {
     look.operation = operation;
     look.priority = priorities_[task];
   }
-  note_use(task, operation);
   priorities_[task] = 0;
   for (std::size_t other = 0; other < tasks_seen_; ++other) {
     if (priorities_[other] != 0 && depend(pending_[other], operation)) priorities_[other] = 0;
@@ -55,7 +54,8 @@ std::uint64_t PosStrategy::priority_of(std::size_t task) noexcept {
   if (task == clock) return priorities_[task];
   tasks_seen_ = std::max(tasks_seen_, task + 1);
   const Operation& operation = pending_[task];
-  const bool is_free = operation.kind == OperationKind::sleep ? sleeps_are_free_ : !matters(operation);
+  const bool is_free = operation.kind == OperationKind::clock_read ||
+                       (operation.kind == OperationKind::sleep && sleeps_are_free_);
   constexpr std::uint32_t looks_of_a_poll = 3;
   if (is_free) {
     priorities_[task] = highest;

@@ -4,8 +4,8 @@
 // Source: Yuan, Yang, Gu, "Partial order aware concurrency sampling", CAV 2018. Operations that nothing depends
 // on are not drawn again and again, so the sample is close to uniform over partial orders rather than over
 // interleavings. The clock takes part with an operation of its own, "to the next timer": one that meets a low
-// priority elsewhere passes it many times in a row, which is how a peer is slow for several time-outs. What
-// does not matter (SamplingStrategy) runs at once; so does going to sleep, in every second execution. Looking a
+// priority elsewhere passes it many times in a row, which is how a peer is slow for several time-outs. Reading
+// a clock conflicts with nothing and runs at once; so does going to sleep, in every second execution. Looking a
 // fourth time at what nobody has changed draws no new priority, so that a task that polls is as slow or as quick
 // as if it looked once more; one that yields or polls without end has the lowest priority.
 #pragma once

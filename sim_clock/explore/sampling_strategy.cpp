@@ -14,19 +14,16 @@ constexpr std::uint32_t orders_of_magnitude = 20;  // 1 us << 20 is about 1 s
 void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   generator_ = RandomGenerator{seed};
   period_ = period_learned_;
-  things_.begin();
-  all_matters_ = generator_.below(4) == 0;
   time_mode_ = begin();
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
-  slow_moments().begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
+  slow_moments_.begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
   for (Occasions& fault : faults_)
     fault.begin(generator_, generator_.below(2) == 0 ? 0 : 1 + generator_.below(2));
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
   period_learned_ = period_;
-  things_.learn();
-  if (slow_moments().passed() != 0) slow_moments().learn();
+  if (slow_moments_.passed() != 0) slow_moments_.learn();
   for (Occasions& fault : faults_) {
     if (fault.passed() != 0) fault.learn();
   }
@@ -38,7 +35,7 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
     case TimeMode::bursts:
       return generator_.bits(burst_bits_) == 0 ? draw_slow_moment() : SlowMoment{};
     case TimeMode::silence:
-      if (!matters(choice.pending[choice.running]) || slow_moments().pass() == 0) return {};
+      if (!acts_on_something(choice.pending[choice.running]) || slow_moments_.pass() == 0) return {};
       return draw_slow_moment();
     case TimeMode::clock:
       if (choice.until_next_timer > longest_silence || !clock_goes_first(choice)) return {};
@@ -58,18 +55,6 @@ SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
   const std::uint32_t order = generator_.below(orders_of_magnitude + 1);
   const SimTime least = shortest_slow_moment * (std::int64_t{1} << order);
   return {.duration = least + least / 8 * generator_.below(8), .others_go_on = generator_.below(2) == 1};
-}
-
-std::size_t SamplingStrategy::note_use(TaskId task, const Operation& operation) noexcept {
-  const std::size_t thing = things_.thing_of(operation);
-  if (thing != SharedThings::none) things_.use(thing, task);
-  return thing;
-}
-
-bool SamplingStrategy::matters(const Operation& operation) noexcept {
-  if (all_matters_) return true;
-  const std::size_t thing = things_.thing_of(operation);
-  return thing != SharedThings::none && things_.is_shared(thing);
 }
 
 std::size_t SamplingStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {

@@ -4,15 +4,12 @@
 // Time. In each execution it passes in one of these ways while somebody could run:
 //   bursts   with the same probability, 2^-3 to 2^-13, at each point: the machine, or the one task at hand;
 //   silence  one to three times, each before an operation drawn uniformly from those of the whole execution
-//            that matter;
+//            that act on something in particular;
 //   clock    the clock takes part like a task: it "runs" by going on to the next timer, when the strategy
 //            chooses it (clock_goes_first()).
 // A slow moment lasts for a time drawn log-uniformly from 1 us to 2 s, or for a multiple of the time to the next
 // timer, or of the last such time known: an answer that is five time-outs late is one decision. Nobody who could run is held
 // up for more than 16 s at a time: that is no slow machine any more.
-//
-// What matters. In three executions of four the strategies give their attention to operations on things that
-// several tasks use (SharedThings), as far as the executions before have shown; in the fourth to all.
 //
 // Faults. Of the kinds that are granted, each is on in every second execution, and then strikes at places
 // drawn uniformly from its occasions.
@@ -22,7 +19,6 @@
 
 #include "sim_clock/explore/occasions.hpp"
 #include "sim_clock/explore/random_generator.hpp"
-#include "sim_clock/explore/shared_things.hpp"
 #include "sim_clock/explore/strategy.hpp"
 
 namespace ltsim {
@@ -43,34 +39,17 @@ class SamplingStrategy : public Strategy {
   /// In time mode `clock`, with a timer armed: whether time goes on to the next timer before anybody runs.
   [[nodiscard]] virtual bool clock_goes_first(const SlowMomentChoice& /*choice*/) noexcept { return false; }
 
-  /// A strategy that follows steps tells what `task` uses. @return which of the things() it is, or none
-  std::size_t note_use(TaskId task, const Operation& operation) noexcept;
-  /// Whether the order of the operation among those of other tasks is worth a decision in this execution.
-  [[nodiscard]] bool matters(const Operation& operation) noexcept;
-
-  [[nodiscard]] bool all_matters() const noexcept { return all_matters_; }
-  [[nodiscard]] const SharedThings& things() const noexcept { return things_; }
-  [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept {
-    return things_.thing_of(operation);
-  }
   [[nodiscard]] RandomGenerator& generator() noexcept { return generator_; }
 
  private:
   [[nodiscard]] SlowMoment draw_slow_moment() noexcept;
-  [[nodiscard]] Occasions& slow_moments() noexcept {
-    return all_matters_ ? slow_moments_where_all_matters_ : slow_moments_;
-  }
 
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
   SimTime period_{0};          // the last time to the next timer that was seen; 0: none yet
   SimTime period_learned_{0};  // the same at the end of the last execution that counts
   unsigned burst_bits_ = 1;    // mode `bursts`: a slow moment has the probability 2^-bits
-  SharedThings things_;
-  bool all_matters_ = false;
-  // The two kinds of executions have numbers of occasions of their own.
   Occasions slow_moments_;
-  Occasions slow_moments_where_all_matters_;
   std::array<Occasions, fault_kinds_count> faults_;
 };
 

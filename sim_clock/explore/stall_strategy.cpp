@@ -8,19 +8,19 @@ namespace ltsim {
 
 SamplingStrategy::TimeMode StallStrategy::begin() noexcept {
   events_left_ = 0;
-  silences().begin(generator(), 1 + generator().below(3));
+  silences_.begin(generator(), 1 + generator().below(3));
   return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
 }
 
 void StallStrategy::learn(const ExecutionSummary& summary) noexcept {
   SamplingStrategy::learn(summary);
-  silences().learn();
+  silences_.learn();
 }
 
 std::size_t StallStrategy::choose_task(const TaskChoice& choice) noexcept {
   const auto count = static_cast<std::uint32_t>(choice.options.size());
-  if (matters(choice.pending[choice.running]) && silences().pass() != 0) {
-    const auto orders = static_cast<std::uint32_t>(std::bit_width(silences().estimate())) + 3;
+  if (silences_.pass() != 0) {
+    const auto orders = static_cast<std::uint32_t>(std::bit_width(silences_.estimate())) + 2;
     const std::uint32_t order = generator().below(orders + 1);
     events_left_ = (std::uint64_t{1} << order) + generator().below(std::uint32_t{1} << order);
     silent_ = static_cast<TaskId>(choice.options[generator().below(count)]);

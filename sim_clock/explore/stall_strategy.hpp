@@ -1,7 +1,7 @@
 // A random walk with silences: one to three times a task gets no processor for long, while the others, and
 // time, go on.
 //
-// A silence begins before an operation that matters, drawn uniformly from those of the execution, and lasts for a number of events
+// A silence begins at a place drawn uniformly from the execution's choices and lasts for a number of events
 // drawn log-uniformly, up to four times the length of an execution; an event is a step of another task or, when
 // nobody else can run, the firing of a timer. So one silence spans any number of time-outs of the peer, which
 // no number of coin flips would. Besides there are the slow moments of SamplingStrategy, measured in time.
@@ -16,8 +16,6 @@ class StallStrategy final : public SamplingStrategy {
   [[nodiscard]] std::string_view name() const noexcept override { return "stall"; }
   [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
   void learn(const ExecutionSummary& summary) noexcept override;
-  [[nodiscard]] bool follows_steps() const noexcept override { return true; }
-  void performs(TaskId task, const Operation& operation) noexcept override { note_use(task, operation); }
 
  private:
   TimeMode begin() noexcept override;
@@ -26,12 +24,7 @@ class StallStrategy final : public SamplingStrategy {
   /// Counts one event. @return whether the silence goes on
   [[nodiscard]] bool pass_event() noexcept;
 
-  [[nodiscard]] Occasions& silences() noexcept {
-    return all_matters() ? silences_where_all_matters_ : silences_;
-  }
-
   Occasions silences_;
-  Occasions silences_where_all_matters_;
   TaskId silent_ = 0;
   std::uint64_t events_left_ = 0;  // of the silence; 0: nobody is silent
 };

@@ -5,13 +5,14 @@
 namespace ltsim {
 
 SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
+  things_.begin();
   tasks_seen_ = tasks_learned_;
   interesting_ = draw_interesting();
   left_sum_ = 0;
   for (std::size_t task = 0; task < tasks_seen_; ++task) {
     left_[task] = expected_[interesting_][task];
     left_sum_ += left_[task];
-    for (std::size_t thing = 0; thing < things().count(); ++thing) passed_[thing][task] = 0;
+    for (std::size_t thing = 0; thing < things_.count(); ++thing) passed_[thing][task] = 0;
     passed_[everything][task] = 0;
   }
   clock_left_ = 0;
@@ -23,11 +24,11 @@ SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
 }
 
 std::size_t SurwStrategy::draw_interesting() noexcept {
-  if (all_matters()) return everything;
+  if (generator().below(4) == 0) return everything;
   std::array<std::size_t, SharedThings::things_max> shared{};
   std::uint32_t shared_count = 0;
-  for (std::size_t thing = 0; thing < things().count(); ++thing) {
-    if (things().is_shared(thing)) shared[shared_count++] = thing;
+  for (std::size_t thing = 0; thing < things_.count(); ++thing) {
+    if (things_.is_shared(thing)) shared[shared_count++] = thing;
   }
   return shared_count == 0 ? everything : shared[generator().below(shared_count)];
 }
@@ -50,8 +51,9 @@ void SurwStrategy::learn(const ExecutionSummary& summary) noexcept {
       expected = std::max(passed_[thing][task], expected - (expected + 15) / 16);
     }
   };
-  for (std::size_t thing = 0; thing < things().count(); ++thing) learn_one(thing);
+  for (std::size_t thing = 0; thing < things_.count(); ++thing) learn_one(thing);
   learn_one(everything);
+  things_.learn();
   tasks_learned_ = tasks_seen_;
 }
 
@@ -89,8 +91,9 @@ void SurwStrategy::performs(TaskId task, const Operation& operation) noexcept {
     }
     tasks_seen_ = task + std::size_t{1};
   }
-  const std::size_t thing = note_use(task, operation);
+  const std::size_t thing = things_.thing_of(operation);
   if (thing == SharedThings::none) return;
+  things_.use(thing, task);
   ++passed_[thing][task];
   ++passed_[everything][task];
   if (interesting_ != everything && interesting_ != thing) return;
@@ -102,7 +105,7 @@ void SurwStrategy::performs(TaskId task, const Operation& operation) noexcept {
 }
 
 bool SurwStrategy::is_interesting(const Operation& operation) noexcept {
-  const std::size_t thing = thing_of(operation);
+  const std::size_t thing = things_.thing_of(operation);
   return thing != SharedThings::none && (interesting_ == everything || interesting_ == thing);
 }
 

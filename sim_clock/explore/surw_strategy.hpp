@@ -5,7 +5,7 @@
 // task that is to do the next interesting operation is drawn with a probability proportional to the number of
 // interesting operations that it has left, all their interleavings are equally likely. The others wait before
 // their interesting operations until that task has done its own. The numbers are learned from the executions
-// before. Interesting is one thing (SharedThings) that several tasks use, or, where all matters,
+// before. Interesting is one thing (SharedThings) that several tasks use, or, in one execution of four,
 // everything. In every second execution the clock takes part as a task with 1 to 64 operations, each of which
 // goes on to the next timer.
 #pragma once
@@ -13,6 +13,7 @@
 #include <array>
 
 #include "sim_clock/explore/sampling_strategy.hpp"
+#include "sim_clock/explore/shared_things.hpp"
 
 namespace ltsim {
 
@@ -37,6 +38,7 @@ class SurwStrategy final : public SamplingStrategy {
   [[nodiscard]] TaskId draw_next() noexcept;
   [[nodiscard]] bool is_interesting(const Operation& operation) noexcept;
 
+  SharedThings things_;
   std::size_t tasks_seen_ = 0;     // all have smaller numbers
   std::size_t tasks_learned_ = 0;  // of executions that count: one that is run again begins with no more
   std::array<Counts, everything + 1> passed_{};    // in this execution; the last: of everything
