@@ -56,6 +56,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
   constexpr std::uint64_t executions_per_look_at_the_time = 64;
   ExploreReport report;
   HashSet traces{distinct_schedules_max};
+  world_.coverage().forget();
   while (report.executions < options.executions_max) {
     if (options.seconds_max && report.executions % executions_per_look_at_the_time == 0 &&
         elapsed() >= *options.seconds_max) {

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 
+#include "sim_clock/check/code_site.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace {
@@ -15,39 +16,50 @@ using ltsim::OperationKind;
 using ltsim::Segments;
 
 /// Out of line, so that the announcement of an unshared access is a subtraction, a comparison and a return.
-[[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes,
-                                     OperationKind kind) noexcept {
-  if (ltsim::current_task != nullptr) ltsim::current_task->world->segments().access(address, bytes, kind);
+[[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes, OperationKind kind,
+                                     const void* caller) noexcept {
+  if (ltsim::current_task == nullptr) return;
+  ltsim::current_task->world->segments().access(address, bytes, kind, ltsim::code_site(caller));
 }
 
-inline void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+/// @param caller  the return address of the announcement: it stands in the code under test
+inline void access(const volatile void* address, std::size_t bytes, OperationKind kind,
+                   const void* caller) noexcept {
   if (Segments::contains(address)) [[unlikely]]
-    shared_access(address, bytes, kind);
+    shared_access(address, bytes, kind, caller);
 }
 
 /// A range that the compiler copies or fills itself: one scheduling point per eight bytes, all before the
 /// first byte moves.
-inline void access_range(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+inline void access_range(const volatile void* address, std::size_t bytes, OperationKind kind,
+                         const void* caller) noexcept {
   if (!Segments::contains(address)) [[likely]]
     return;
   constexpr std::size_t piece = 8;
   for (std::size_t at = 0; at < bytes; at += piece) {
     shared_access(static_cast<const volatile char*>(address) + at, bytes - at < piece ? bytes - at : piece,
-                  kind);
+                  kind, caller);
   }
+  if (kind == OperationKind::write && ltsim::current_task != nullptr)
+    ltsim::current_task->world->segments().announce_write(address, bytes);
 }
 
 }  // namespace
 
-#define LTSIM_ACCESSES(bytes)                                                                               \
-  extern "C" void __tsan_read##bytes(void* p) { access(p, bytes, OperationKind::read); }                    \
-  extern "C" void __tsan_write##bytes(void* p) { access(p, bytes, OperationKind::write); }                  \
-  extern "C" void __tsan_unaligned_read##bytes(void* p) { access(p, bytes, OperationKind::read); }          \
-  extern "C" void __tsan_unaligned_write##bytes(void* p) { access(p, bytes, OperationKind::write); }        \
-  extern "C" void __tsan_volatile_read##bytes(void* p) { access(p, bytes, OperationKind::read); }           \
-  extern "C" void __tsan_volatile_write##bytes(void* p) { access(p, bytes, OperationKind::write); }         \
-  extern "C" void __tsan_unaligned_volatile_read##bytes(void* p) { access(p, bytes, OperationKind::read); } \
-  extern "C" void __tsan_unaligned_volatile_write##bytes(void* p) { access(p, bytes, OperationKind::write); }
+#define LTSIM_ACCESS(name, bytes, kind)                                 \
+  extern "C" void __tsan_##name##bytes(void* p) {                       \
+    access(p, bytes, OperationKind::kind, __builtin_return_address(0)); \
+  }
+
+#define LTSIM_ACCESSES(bytes)                        \
+  LTSIM_ACCESS(read, bytes, read)                    \
+  LTSIM_ACCESS(write, bytes, write)                  \
+  LTSIM_ACCESS(unaligned_read, bytes, read)          \
+  LTSIM_ACCESS(unaligned_write, bytes, write)        \
+  LTSIM_ACCESS(volatile_read, bytes, read)           \
+  LTSIM_ACCESS(volatile_write, bytes, write)         \
+  LTSIM_ACCESS(unaligned_volatile_read, bytes, read) \
+  LTSIM_ACCESS(unaligned_volatile_write, bytes, write)
 
 LTSIM_ACCESSES(1)
 LTSIM_ACCESSES(2)
@@ -55,9 +67,11 @@ LTSIM_ACCESSES(4)
 LTSIM_ACCESSES(8)
 LTSIM_ACCESSES(16)
 
-extern "C" void __tsan_read_range(void* p, std::size_t bytes) { access_range(p, bytes, OperationKind::read); }
+extern "C" void __tsan_read_range(void* p, std::size_t bytes) {
+  access_range(p, bytes, OperationKind::read, __builtin_return_address(0));
+}
 extern "C" void __tsan_write_range(void* p, std::size_t bytes) {
-  access_range(p, bytes, OperationKind::write);
+  access_range(p, bytes, OperationKind::write, __builtin_return_address(0));
 }
 
 // Announced too, and of no interest here: virtual table pointers, function entry and exit, the runtime's

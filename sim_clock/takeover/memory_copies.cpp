@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "sim_clock/check/code_site.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace {
@@ -41,8 +42,8 @@ constinit NextFunction<void*(void*, int, std::size_t)> next_memset{"memset"};
 
 constexpr std::size_t piece_bytes = 8;
 
-void point(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
-  if (Segments::contains(address)) ltsim::current_task->world->segments().access(address, bytes, kind);
+void point(const volatile void* address, std::size_t bytes, OperationKind kind, std::uint32_t site) noexcept {
+  if (Segments::contains(address)) ltsim::current_task->world->segments().access(address, bytes, kind, site);
 }
 
 /// The bytes are moved by instructions, not by a call that would lead back here.
@@ -54,22 +55,22 @@ inline void fill_bytes(std::byte* to, int value, std::size_t bytes) noexcept {
   asm volatile("rep stosb" : "+D"(to), "+c"(bytes) : "a"(value) : "memory");
 }
 
-void copy_piece(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
+void copy_piece(std::byte* to, const std::byte* from, std::size_t bytes, std::uint32_t site) noexcept {
   std::byte piece[piece_bytes];
-  point(from, bytes, OperationKind::read);
+  point(from, bytes, OperationKind::read, site);
   move_bytes(piece, from, bytes);
-  point(to, bytes, OperationKind::write);
+  point(to, bytes, OperationKind::write, site);
   move_bytes(to, piece, bytes);
 }
 
-void* copy_in_pieces(void* to, const void* from, std::size_t bytes) noexcept {
+void* copy_in_pieces(void* to, const void* from, std::size_t bytes, std::uint32_t site) noexcept {
   auto* const target = static_cast<std::byte*>(to);
   const auto* const source = static_cast<const std::byte*>(from);
   const bool overlaps_upward = target > source && target < source + bytes;
   for (std::size_t done = 0; done < bytes;) {
     const std::size_t piece = std::min(piece_bytes, bytes - done);
     const std::size_t at = overlaps_upward ? bytes - done - piece : done;
-    copy_piece(target + at, source + at, piece);
+    copy_piece(target + at, source + at, piece, site);
     done += piece;
   }
   return to;
@@ -80,9 +81,9 @@ bool is_shared_copy(const void* a, const void* b) noexcept {
 }
 
 template <typename Next>
-void* copy(Next& next, void* to, const void* from, std::size_t bytes) noexcept {
+void* copy(Next& next, void* to, const void* from, std::size_t bytes, const void* caller) noexcept {
   if (is_shared_copy(to, from)) [[unlikely]]
-    return copy_in_pieces(to, from, bytes);
+    return copy_in_pieces(to, from, bytes, ltsim::code_site(caller));
   auto* const function = next.get();
   if (function != nullptr) [[likely]]
     return function(to, from, bytes);
@@ -90,11 +91,11 @@ void* copy(Next& next, void* to, const void* from, std::size_t bytes) noexcept {
   return to;
 }
 
-void* fill(void* to, int value, std::size_t bytes) noexcept {
+void* fill(void* to, int value, std::size_t bytes, const void* caller) noexcept {
   if (Segments::contains(to) && ltsim::current_task != nullptr) [[unlikely]] {
     for (std::size_t done = 0; done < bytes; done += piece_bytes) {
       const std::size_t piece = std::min(piece_bytes, bytes - done);
-      point(static_cast<std::byte*>(to) + done, piece, OperationKind::write);
+      point(static_cast<std::byte*>(to) + done, piece, OperationKind::write, ltsim::code_site(caller));
       fill_bytes(static_cast<std::byte*>(to) + done, value, piece);
     }
     return to;
@@ -109,18 +110,22 @@ void* fill(void* to, int value, std::size_t bytes) noexcept {
 }  // namespace
 
 extern "C" void* memcpy(void* to, const void* from, std::size_t bytes) noexcept {
-  return copy(next_memcpy, to, from, bytes);
+  return copy(next_memcpy, to, from, bytes, __builtin_return_address(0));
 }
 extern "C" void* memmove(void* to, const void* from, std::size_t bytes) noexcept {
-  return copy(next_memmove, to, from, bytes);
+  return copy(next_memmove, to, from, bytes, __builtin_return_address(0));
 }
-extern "C" void* memset(void* to, int value, std::size_t bytes) noexcept { return fill(to, value, bytes); }
+extern "C" void* memset(void* to, int value, std::size_t bytes) noexcept {
+  return fill(to, value, bytes, __builtin_return_address(0));
+}
 
 // clang's names for the same calls in instrumented code.
 extern "C" void* __tsan_memcpy(void* to, const void* from, std::size_t bytes) {
-  return copy(next_memcpy, to, from, bytes);
+  return copy(next_memcpy, to, from, bytes, __builtin_return_address(0));
 }
 extern "C" void* __tsan_memmove(void* to, const void* from, std::size_t bytes) {
-  return copy(next_memmove, to, from, bytes);
+  return copy(next_memmove, to, from, bytes, __builtin_return_address(0));
 }
-extern "C" void* __tsan_memset(void* to, int value, std::size_t bytes) { return fill(to, value, bytes); }
+extern "C" void* __tsan_memset(void* to, int value, std::size_t bytes) {
+  return fill(to, value, bytes, __builtin_return_address(0));
+}

@@ -1,5 +1,5 @@
 // pthread_mutex_*(3), pthread_cond_*(3), pthread_once(3). Initialisers and attributes are libc's own: they
-// only fill memory.
+// only fill memory, and where that lies in a segment the world is told.
 //
 // A scenario may destroy objects of the code under test after the run, outside any task: a mutex that tasks
 // used is nobody's then, and locking it does nothing.
@@ -25,6 +25,18 @@ clockid_t clock_of(const pthread_cond_t* condition) noexcept {
 bool is_valid(const timespec& time) noexcept { return time.tv_nsec >= 0 && time.tv_nsec < 1'000'000'000; }
 
 }  // namespace
+
+extern "C" int pthread_mutex_init(pthread_mutex_t* mutex, const pthread_mutexattr_t* attributes) noexcept {
+  const int result = LTSIM_NEXT(pthread_mutex_init)(mutex, attributes);
+  if (current_task != nullptr) current_task->world->segments().accept_change(mutex, sizeof *mutex);
+  return result;
+}
+
+extern "C" int pthread_cond_init(pthread_cond_t* condition, const pthread_condattr_t* attributes) noexcept {
+  const int result = LTSIM_NEXT(pthread_cond_init)(condition, attributes);
+  if (current_task != nullptr) current_task->world->segments().accept_change(condition, sizeof *condition);
+  return result;
+}
 
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   if (current_task != nullptr) return current_task->world->mutexes().lock(mutex);

@@ -66,6 +66,7 @@ void Damages::strike(Grant& grant, std::span<std::byte> memory, std::size_t way)
   const std::size_t at = grant.offset + way / ways_per_byte(grant.kind);
   const std::byte before = memory[at];
   memory[at] = damaged(grant.kind, before, way % ways_per_byte(grant.kind));
+  world_.checks().accept_change(static_cast<SharedPlace>(&memory[at] - world_.segments().memory()), 1);
   world_.note([&] {
     return fmt::format("fault: {}: byte {} of {} was {:#04x} and becomes {:#04x}", to_string(grant.kind), at,
                        grant.segment, std::to_integer<unsigned>(before),

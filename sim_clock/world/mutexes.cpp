@@ -77,6 +77,7 @@ Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
     state.execution = world_.execution_number();
     const GhostScope ghost;
     state.object = world_.objects().add(fmt::format("mutex-{}", ++mutexes_count_));
+    state_changed(state);
   }
   return state;
 }
@@ -97,6 +98,7 @@ int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
   const std::uint32_t self = current_task->id + 1U;
   if (state.owner_plus_one == self && (state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
     ++state.locked_count;
+    state_changed(state);
     return 0;
   }
   if (state.owner_plus_one != 0) return EBUSY;
@@ -109,6 +111,7 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, Dead
   if (state.owner_plus_one == self) {
     if ((state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
       ++state.locked_count;
+      state_changed(state);
       return 0;
     }
     if ((state.kind & kind_mask) == PTHREAD_MUTEX_ERRORCHECK) return EDEADLK;
@@ -125,12 +128,15 @@ int Mutexes::take(State& state, const void* address) noexcept {
   if (state.health == State::Health::not_recoverable) return ENOTRECOVERABLE;
   state.owner_plus_one = current_task->id + 1U;
   state.locked_count = 1;
+  world_.checks().acquire(current_task->id, SyncKey::object(state.object));
+  state_changed(state);
   if (inherits_priority(state.kind))
     world_.scheduler().end_lending(mutex_key(address, state.kind), current_task);
   if (!is_robust(state.kind)) return 0;
   robust_held_.push_back({.state = &state, .address = address, .owner = current_task->id});
   if (state.health == State::Health::sound) return 0;
   state.health = State::Health::inconsistent;
+  state_changed(state);
   return EOWNERDEAD;
 }
 
@@ -148,11 +154,16 @@ Scheduler::Wake Mutexes::wait_for_owner(const State& state, const void* address,
   return wake;
 }
 
+void Mutexes::state_changed(const State& state) noexcept {
+  world_.segments().accept_change(&state, sizeof state);
+}
+
 int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
   State& state = resolve(mutex);
   world_.scheduler().point(operation_on(OperationKind::mutex_unlock, state.object));
   if (const int error = check_owner(state); error != 0) return error;
   if (--state.locked_count == 0) release(state, mutex);
+  state_changed(state);
   return 0;
 }
 
@@ -176,6 +187,7 @@ int Mutexes::consistent(pthread_mutex_t* mutex) noexcept {
   if (state.health != State::Health::inconsistent || state.owner_plus_one != current_task->id + 1U)
     return EINVAL;
   state.health = State::Health::sound;
+  state_changed(state);
   return 0;
 }
 
@@ -183,12 +195,14 @@ int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
   State& state = resolve(mutex);
   if (state.owner_plus_one != 0) return EBUSY;
   state.execution = 0;
+  state_changed(state);
   return 0;
 }
 
 void Mutexes::release(State& state, const void* address) noexcept {
   state.owner_plus_one = 0;
   state.locked_count = 0;
+  world_.checks().release(current_task->id, SyncKey::object(state.object));
   Scheduler& scheduler = world_.scheduler();
   const WaitKey key = mutex_key(address, state.kind);
   if (inherits_priority(state.kind)) {
@@ -206,6 +220,7 @@ void Mutexes::release(State& state, const void* address) noexcept {
       woken_max = tasks_max;  // none of them will have it
     }
   }
+  state_changed(state);
   scheduler.wake(key, woken_max);
 }
 
@@ -223,6 +238,9 @@ void Mutexes::release_robust_of(TaskId owner) noexcept {
     state.owner_plus_one = 0;
     state.locked_count = 0;
     state.health = State::Health::owner_died;
+    // What the dead owner did comes before what the next one does, who is told of its death.
+    world_.checks().release(owner, SyncKey::object(state.object));
+    state_changed(state);
     world_.scheduler().wake(mutex_key(held.address, state.kind), 1);
   }
 }
@@ -242,6 +260,7 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   if (const int error = check_owner(state); error != 0) return error;
   // Like glibc, one unlock: a recursive mutex that was locked twice stays locked while its owner waits.
   if (--state.locked_count == 0) release(state, mutex);
+  state_changed(state);
   const bool spurious = world_.faults().strikes(FaultKind::spurious_wake);
   // One that wakes for nothing can run again at once: when it does, the strategy says.
   const auto wake =
@@ -252,6 +271,7 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
   }
   if (state.owner_plus_one == self) {
     ++state.locked_count;  // a recursive one that stayed locked
+    state_changed(state);
   } else if (const int error = take(state, mutex); error != 0) {
     return error;
   }
@@ -277,16 +297,20 @@ int Mutexes::once(pthread_once_t* control, void (*initialise)()) {
   constexpr int done = 2;
   world_.scheduler().point(operation_on(OperationKind::once));
   while (*control == running) world_.scheduler().block(Segments::canonical(control), VirtualClock::never);
+  const SyncKey key = SyncKey::once(Segments::canonical(control));
+  world_.checks().acquire(current_task->id, key);
   if (*control == done) return 0;
   *control = running;
   try {
     initialise();
   } catch (...) {
     *control = 0;  // the next one may try
+    world_.checks().release(current_task->id, key);
     world_.scheduler().wake(Segments::canonical(control), tasks_max);
     throw;
   }
   *control = done;
+  world_.checks().release(current_task->id, key);
   world_.scheduler().wake(Segments::canonical(control), tasks_max);
   return 0;
 }
@@ -305,12 +329,15 @@ int Mutexes::futex_wait(const std::uint32_t* word, std::uint32_t expected, Deadl
     errno = ETIMEDOUT;
     return -1;
   }
+  world_.checks().acquire(current_task->id, SyncKey::futex(wait_key(word, shared)));
   return 0;
 }
 
 int Mutexes::futex_wake(const std::uint32_t* word, std::size_t count_max, bool shared) noexcept {
   world_.scheduler().point(operation_on(OperationKind::futex_wake));
-  return static_cast<int>(world_.scheduler().wake(wait_key(word, shared), count_max));
+  const WaitKey key = wait_key(word, shared);
+  world_.checks().release(current_task->id, SyncKey::futex(key));
+  return static_cast<int>(world_.scheduler().wake(key, count_max));
 }
 
 }  // namespace ltsim

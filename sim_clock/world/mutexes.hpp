@@ -79,6 +79,8 @@ class Mutexes {
   /// The running task becomes the owner of a mutex that is free.
   /// @return 0, or EOWNERDEAD if the last owner died
   int take(State& state, const void* address) noexcept;
+  /// Tells that the state was changed by us, in case that it lies in a segment.
+  void state_changed(const State& state) noexcept;
   void release_robust_of(TaskId owner) noexcept;
 
   struct RobustHeld {

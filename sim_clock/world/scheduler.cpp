@@ -89,6 +89,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.storage->reset();
   task.context.prepare(task.storage->stack_top(), TaskStorage::stack_bytes, task.storage->thread_pointer(),
                        &run_task, &task);
+  world_.checks().task_begins(task.id);
   ++unfinished_count_;
   ++unfinished_in_[process];
   make_runnable(task);

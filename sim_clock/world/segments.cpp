@@ -105,6 +105,7 @@ void Segments::leave(std::string_view path, std::span<const std::byte> content) 
   std::memcpy(bytes, content.data(), content.size());
   std::memset(bytes + content.size(), 0, page_end(content.size()) - content.size());
   segment.bytes = content.size();
+  world_.checks().accept_change(static_cast<SharedPlace>(bytes - all_), page_end(content.size()));
 }
 
 Segments::Segment& Segments::create(std::string_view name) {
@@ -142,8 +143,9 @@ int Segments::resize(int descriptor, off_t bytes) noexcept {
   }
   if (wanted > segment->bytes) {
     // The rest of the last page, too: it can be touched, and must not show what another execution left.
-    std::memset(all_ + (index_of(*segment) << window_shift) + segment->bytes, 0,
-                page_end(wanted) - segment->bytes);
+    const std::size_t begin = (index_of(*segment) << window_shift) + segment->bytes;
+    std::memset(all_ + begin, 0, page_end(wanted) - segment->bytes);
+    world_.checks().accept_change(static_cast<SharedPlace>(begin), page_end(wanted) - segment->bytes);
   }
   segment->bytes = wanted;
   return 0;
@@ -238,19 +240,72 @@ void Segments::process_died(ProcessId process) noexcept {
   }
 }
 
-void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept {
+void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind,
+                      std::uint32_t site) noexcept {
   const Place place = locate(address, kind);
   const std::uint64_t points_before = world_.scheduler().points();
   world_.scheduler().point({.kind = kind,
                             .bytes = static_cast<std::uint8_t>(bytes),
                             .object = place.object,
-                            .offset = place.offset});
+                            .offset = place.offset,
+                            .site = site});
   const bool others_ran = world_.scheduler().points() != points_before + 1;
   if (others_ran) static_cast<void>(locate(address, kind));
   if (world_.damages().are_possible()) [[unlikely]] {
     const std::size_t index = segment_of_window(window_of(address));
     world_.damages().choose(segments_[index].name, {all_ + (index << window_shift), segments_[index].bytes});
   }
+
+  MemoryChecks& checks = world_.checks();
+  if (!checks.on()) return;
+  const SharedPlace shared_place = place_of(address);
+  const bool writes = changes_memory(kind);
+  if (!checks.before_access(shared_place, bytes, writes)) [[unlikely]] {
+    const SharedPlace begin = shared_place & ~7U;
+    changed_unseen(checks.find_unseen_change(begin, (shared_place - begin + bytes + 7) & ~std::size_t{7})
+                       .value_or(shared_place),
+                   fmt::format("{} noticed it at its next access", current_task->name));
+  }
+  if (kind == OperationKind::read || kind == OperationKind::write) {
+    checks.accessed({.task = current_task->id,
+                     .place = shared_place,
+                     .bytes = static_cast<std::uint8_t>(bytes),
+                     .writes = writes,
+                     .plain = true,
+                     .site = site},
+                    !writes);
+  }
+}
+
+void Segments::announce_write(const volatile void* address, std::size_t bytes) noexcept {
+  world_.checks().announce_write(place_of(address), bytes);
+}
+
+void Segments::accept_change(const volatile void* address, std::size_t bytes) noexcept {
+  if (contains(address)) world_.checks().accept_change(place_of(address), bytes);
+}
+
+void Segments::accept_change(ObjectId segment, std::uint32_t offset, std::size_t bytes) noexcept {
+  for (std::size_t i = 0; i < segments_count_; ++i) {
+    if (segments_[i].object != segment) continue;
+    world_.checks().accept_change(static_cast<SharedPlace>(i << window_shift) + offset, bytes);
+  }
+}
+
+void Segments::check_all_memory() {
+  for (std::size_t i = 0; i < segments_count_; ++i) {
+    const auto begin = static_cast<SharedPlace>(i << window_shift);
+    const auto change = world_.checks().find_unseen_change(begin, page_end(segments_[i].bytes));
+    if (change) return changed_unseen(*change, "it was noticed at the end");
+  }
+}
+
+void Segments::changed_unseen(SharedPlace place, std::string_view noticed) {
+  world_.unsupported(fmt::format(
+      "byte {} of segment {} changed without an access that ltsim saw ({}): by inline assembly, or "
+      "by code that is not compiled with ltsim_instrument(). Scheduling points are missing there, "
+      "and a pass would mean nothing",
+      offset_in_segment(place), world_.objects().object_name(segment_at(place)), noticed));
 }
 
 Segments::Place Segments::locate(const volatile void* address, OperationKind kind) noexcept {
@@ -279,13 +334,6 @@ std::uint64_t Segments::value_at(const Operation& operation) const noexcept {
                 std::min<std::size_t>(operation.bytes, sizeof value));
   }
   return value;
-}
-
-WaitKey Segments::canonical(const volatile void* address) noexcept {
-  const auto raw = reinterpret_cast<std::uintptr_t>(address);
-  if (!contains(address)) return raw;
-  const std::uint64_t segment = segment_of_window(window_of(address));
-  return std::uint64_t{1} << 63U | segment << window_shift | (raw & (segment_bytes_max - 1));
 }
 
 Segments::Segment* Segments::find(std::string_view name) noexcept {

@@ -20,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim_clock/check/race_detector.hpp"
 #include "sim_clock/world/operation.hpp"
 #include "sim_clock/world/task.hpp"
 
@@ -67,7 +68,30 @@ class Segments {
   /// The running task is about to access memory in the range: scheduling point. Ends the execution as a crash
   /// if the task's process has not mapped the address (any more), or not for writing, or if it lies behind
   /// the end of its segment; before the point, and again after it, for the mapping may have gone meanwhile.
-  void access(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
+  /// Plain accesses are checked for races; atomic ones are to be, when they were made (MemoryChecks::atomic()).
+  /// @param site  as in Operation
+  void access(const volatile void* address, std::size_t bytes, OperationKind kind,
+              std::uint32_t site) noexcept;
+  /// A write that access() was told in pieces is about to be made as a whole, in one step.
+  void announce_write(const volatile void* address, std::size_t bytes) noexcept;
+  /// The simulator itself has just changed these bytes: a state of its own that lies there, a fault. Outside
+  /// the range it does nothing. Whatever else changes without access() is noticed and ends the exploration.
+  void accept_change(const volatile void* address, std::size_t bytes) noexcept;
+  void accept_change(ObjectId segment, std::uint32_t offset, std::size_t bytes) noexcept;
+  /// Ends the execution as unsupported if memory is not as the accesses of its tasks have left it.
+  void check_all_memory();
+
+  [[nodiscard]] static SharedPlace place_of(const volatile void* address) noexcept {
+    return static_cast<SharedPlace>(canonical(address));
+  }
+  [[nodiscard]] static std::uint32_t offset_in_segment(SharedPlace place) noexcept {
+    return place & (segment_bytes_max - 1);
+  }
+  [[nodiscard]] ObjectId segment_at(SharedPlace place) const noexcept {
+    return segments_[place >> window_shift].object;
+  }
+  /// The bytes of all segments, by place.
+  [[nodiscard]] const std::byte* memory() const noexcept { return all_; }
 
   /// The process is gone, and with it its mappings and descriptors. What is in the segments stays.
   void process_died(ProcessId process) noexcept;
@@ -78,7 +102,12 @@ class Segments {
 
   /// Key under which tasks wait for a synchronisation object at this address: equal for all mappings of the
   /// same bytes.
-  [[nodiscard]] static WaitKey canonical(const volatile void* address) noexcept;
+  [[nodiscard]] static WaitKey canonical(const volatile void* address) noexcept {
+    const auto raw = reinterpret_cast<std::uintptr_t>(address);
+    if (!contains(address)) return raw;
+    const std::uint64_t segment = segment_of_window(window_of(address));
+    return std::uint64_t{1} << 63U | segment << window_shift | (raw & (segment_bytes_max - 1));
+  }
 
  private:
   struct Segment {
@@ -115,6 +144,7 @@ class Segments {
   };
   /// Ends the execution as a crash if the running task cannot access the address so.
   [[nodiscard]] Place locate(const volatile void* address, OperationKind kind) noexcept;
+  void changed_unseen(SharedPlace place, std::string_view noticed);
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
   /// There must be room for it.
   Segment& create(std::string_view name);

@@ -80,6 +80,7 @@ int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
     return -1;
   }
   std::memcpy(handle, &create({}, fmt::format("semaphore-{}", count_ + 1), value), sizeof(Handle));
+  world_.segments().accept_change(handle, sizeof(Handle));
   semaphores_[count_ - 1].shared = shared;
   return 0;
 }
@@ -87,6 +88,7 @@ int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
 int Semaphores::destroy(sem_t* handle) noexcept {
   arrive_at(handle, OperationKind::sem_destroy);
   std::memset(handle, 0, sizeof(Handle));
+  world_.segments().accept_change(handle, sizeof(Handle));
   return 0;
 }
 
@@ -100,7 +102,7 @@ int Semaphores::try_wait(sem_t* handle) noexcept {
     errno = EAGAIN;
     return -1;
   }
-  --semaphore.value;
+  take_token(semaphore);
   return 0;
 }
 
@@ -128,6 +130,7 @@ int Semaphores::post(sem_t* handle) noexcept {
 
 void Semaphores::add_one(Semaphore& semaphore) noexcept {
   ++semaphore.value;
+  world_.checks().release(current_task->id, SyncKey::object(semaphore.object));
   world_.scheduler().wake(key_of(semaphore), 1);
 }
 
@@ -149,7 +152,7 @@ int Semaphores::wait_until(sem_t* handle, OperationKind kind, Deadline deadline)
       return -1;
     }
   }
-  --semaphore.value;
+  take_token(semaphore);
   return 0;
 }
 
@@ -160,6 +163,13 @@ void Semaphores::leave(std::string_view path, unsigned value) {
     return;
   }
   create(*name, *name, value);
+}
+
+void Semaphores::take_token(Semaphore& semaphore) noexcept {
+  const SyncKey key = SyncKey::object(semaphore.object);
+  world_.checks().acquire(current_task->id, key);
+  // When no token is left, every post so far has been consumed: no later wait can come from one of them.
+  if (--semaphore.value == 0) world_.checks().forget(key);
 }
 
 sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, unsigned value) {

@@ -69,6 +69,8 @@ class Semaphores {
   void add_one(Semaphore& semaphore) noexcept;
   [[nodiscard]] static WaitKey key_of(const Semaphore& semaphore) noexcept;
   int wait_until(sem_t* handle, OperationKind kind, Deadline deadline) noexcept;
+  /// One token, and with it all that its post comes after.
+  void take_token(Semaphore& semaphore) noexcept;
 
   World& world_;
   static inline std::array<sem_t, semaphores_max> handles_{};  // what open() returns, by index

@@ -47,6 +47,7 @@ int Threads::create(pthread_t* thread, const pthread_attr_t* attributes, void* (
   const ProcessId process = current_task->process;
   Task& task =
       scheduler.create_task(process, fmt::format("thread-{}", world_.next_thread_number(process)), {});
+  world_.checks().follows(task.id, current_task->id);
   task.detached = wanted.detached;
   scheduler.set_priority(task, wanted.priority, wanted.time_sharing);
   task.body = [&task, start, argument] { task.result = start(argument); };
@@ -64,6 +65,7 @@ int Threads::join(pthread_t thread, void** result) noexcept {
   while (task->state != Task::State::finished)
     scheduler.block(World::join_key(task->id), VirtualClock::never);
   task->joined = true;
+  world_.checks().follows(current_task->id, task->id);
   if (result != nullptr) *result = task->result;
   return 0;
 }

@@ -8,12 +8,14 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/race_text.hpp"
 #include "sim_clock/check/self_check.hpp"
 
 namespace ltsim {
 
 void Process::start(std::string_view name, std::function<void()> body) {
-  world_.scheduler().create_task(id_, name, std::move(body));
+  const Task& task = world_.scheduler().create_task(id_, name, std::move(body));
+  if (current_task != nullptr) world_.checks().follows(task.id, current_task->id);
 }
 
 void Process::may_crash(CrashGrant grant) { world_.faults().grant_crashes(id_, grant); }
@@ -36,9 +38,14 @@ void Process::died(std::optional<SimTime> restart_after) {
   ++incarnation_;
   threads_created_count_ = 0;
   begin_ = world_.now() + *restart_after;
+  const std::size_t tasks_before = world_.scheduler().tasks_count();
   for (const Start& start : starts_) {
     Task& task = world_.scheduler().create_task(id_, start.task, start.body);
     world_.scheduler().delay_start(task, begin_);
+    for (std::size_t i = 0; i < tasks_before; ++i) {
+      const Task& dead = world_.scheduler().task(static_cast<TaskId>(i));
+      if (dead.process == id_) world_.checks().follows(task.id, dead.id);
+    }
   }
 }
 
@@ -80,7 +87,19 @@ World::~World() {
   in_execution = nullptr;
 }
 
-void World::end_execution() noexcept { in_execution = nullptr; }
+void World::run() {
+  if (faults_.crash_is_possible()) faults_.prepare_restarts();
+  scheduler_.run();
+  // Now, and not when the execution ends: what the scenario itself may do to the memory comes after.
+  if (!failed()) segments_.check_all_memory();
+}
+
+void World::end_execution() noexcept {
+  in_execution = nullptr;
+  const auto race = checks_.race();
+  if (!race || failed()) return;
+  scheduler_.fail(OutcomeKind::data_race, describe(*race, segments_.segment_at(race->place), *this));
+}
 
 bool World::refuses_real(std::string_view call) {
   if (in_execution == nullptr) return false;
@@ -134,6 +153,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   scheduler_.reset(strategy, listener);
   objects_.reset();
   segments_.reset();
+  checks_.reset();
   semaphores_.reset();
   mutexes_.reset();
   faults_.reset();

@@ -24,6 +24,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim_clock/check/memory_checks.hpp"
 #include "sim_clock/check/outcome.hpp"
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/damages.hpp"
@@ -120,10 +121,7 @@ class World {
   void leave_semaphore(std::string_view name, unsigned value) { semaphores_.leave(name, value); }
 
   /// Runs all tasks until they have finished or the execution has failed.
-  void run() {
-    if (faults_.crash_is_possible()) faults_.prepare_restarts();
-    scheduler_.run();
-  }
+  void run();
   /// Whether the execution has failed already: what a scenario checks after run() means nothing then.
   [[nodiscard]] bool failed() const noexcept { return !scheduler_.outcome().passed(); }
 
@@ -152,6 +150,15 @@ class World {
   /// moves on. It may call violated().
   void whenever_idle(std::function<void()> check) { scheduler_.add_idle_check(std::move(check)); }
 
+  /// Two accesses to a segment that nothing orders, one of them plain and one a write, are a failure of their
+  /// own (data-race) in an execution that does not fail otherwise. Not in this one: the scenario is about what
+  /// comes of them.
+  void allow_data_races() noexcept { checks_.allow_races(); }
+
+  /// Tells the abstract state that the scenario is in, by a number that means the same in each execution: a
+  /// strategy that learns goes where new ones are seen. Callable from anywhere, tasks included.
+  void abstract_state(std::uint64_t hash) noexcept { checks_.coverage().abstract_state(hash); }
+
   /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
   void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
 
@@ -178,7 +185,14 @@ class World {
   /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
   /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
+  /// A race is the outcome from here on if there is nothing worse.
   void end_execution() noexcept;
+
+  /// Races, memory that changed unseen and coverage: on or off in the executions that begin from now on. Off
+  /// is for measuring what they cost.
+  void set_checks(bool on) noexcept { checks_.set_on(on); }
+  /// What no execution before this one has shown, since Coverage::forget().
+  [[nodiscard]] Coverage& coverage() noexcept { return checks_.coverage(); }
 
   // --- for the takeover functions ---
 
@@ -192,6 +206,7 @@ class World {
   [[nodiscard]] ObjectNames& objects() noexcept { return objects_; }
   [[nodiscard]] const ObjectNames& objects() const noexcept { return objects_; }
   [[nodiscard]] Segments& segments() noexcept { return segments_; }
+  [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
@@ -248,6 +263,7 @@ class World {
   Scheduler scheduler_{*this};
   ObjectNames objects_;
   Segments segments_{*this};
+  MemoryChecks checks_{segments_.memory()};
   Semaphores semaphores_{*this};
   Mutexes mutexes_{*this};
   Threads threads_{*this};

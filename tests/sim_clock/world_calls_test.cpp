@@ -190,6 +190,7 @@ TEST_F(CallsTest, a_process_has_one_number_and_no_other_has_it) {
 
 TEST_F(CallsTest, a_volatile_store_to_a_segment_can_come_too_late) {
   const Outcome outcome = run_randomly(200, [](World& world) {
+    world.allow_data_races();
     const auto finished = std::make_shared<int>(0);
     for (const char* name : {"a", "b"}) {
       world.process(name).start("main", [&world, finished] {
@@ -204,6 +205,7 @@ TEST_F(CallsTest, a_volatile_store_to_a_segment_can_come_too_late) {
 
 TEST_F(CallsTest, two_volatile_loads_from_a_segment_can_differ) {
   const Outcome outcome = run_randomly(200, [](World& world) {
+    world.allow_data_races();
     world.process("a").start("main", [] { *static_cast<volatile int*>(map_segment()) = 1; });
     world.process("b").start("main", [&world] {
       const auto* const value = static_cast<const volatile int*>(map_segment());
@@ -219,6 +221,7 @@ __extension__ using SixteenBytes = unsigned __int128;
 // The writer is over in one step, so what is torn is the reader's copy.
 TEST_F(CallsTest, a_copy_out_of_a_segment_can_be_torn) {
   const Outcome outcome = run_randomly(300, [](World& world) {
+    world.allow_data_races();
     world.process("a").start("main",
                              [] { *static_cast<volatile SixteenBytes*>(map_segment()) = ~SixteenBytes{0}; });
     world.process("b").start("main", [&world] {

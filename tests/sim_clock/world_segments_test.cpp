@@ -33,6 +33,7 @@ TEST_F(SegmentsTest, two_processes_see_the_same_bytes_at_different_addresses) {
   std::array<unsigned char*, 2> addresses{};
   std::array<int, 2> found{};
   const Outcome outcome = run([&](World& world) {
+    world.allow_data_races();
     for (const int number : {0, 1}) {
       world.process(number == 0 ? "a" : "b").start("main", [&, number] {
         unsigned char* const bytes = open_and_map();
@@ -110,6 +111,7 @@ TEST_F(SegmentsTest, access_behind_the_last_page_is_a_crash) {
 // A copy of 16 bytes between a segment and private memory may be seen half done.
 TEST_F(SegmentsTest, a_copy_within_a_segment_can_be_torn) {
   const Outcome outcome = run_randomly(300, [](World& world) {
+    world.allow_data_races();
     world.process("a").start("main", [] {
       std::array<unsigned char, 16> source{};
       source.fill(1);
@@ -143,6 +145,7 @@ TEST_F(SegmentsTest, overlapping_moves_and_fills_give_the_right_bytes) {
 
 TEST_F(SegmentsTest, an_unlocked_increment_across_processes_loses_updates) {
   const Outcome outcome = run_randomly(100, [](World& world) {
+    world.allow_data_races();
     const auto finished = std::make_shared<int>(0);
     for (const char* name : {"a", "b"}) {
       world.process(name).start("main", [&world, finished] {

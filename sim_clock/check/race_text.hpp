@@ -1,0 +1,18 @@
+// A data race, told to a person.
+#pragma once
+
+#include <string>
+
+#include "sim_clock/check/race_detector.hpp"
+#include "sim_clock/world/operation.hpp"
+
+namespace ltsim {
+
+class World;
+
+/// "emulator/main writes segment.request[2] at protocol/x.cpp:40 while kernel/main reads it at
+/// protocol/y.cpp:12, and nothing orders the two". The same in every process that runs this program.
+/// @param object  the segment
+[[nodiscard]] std::string describe(const Race& race, ObjectId object, const World& world);
+
+}  // namespace ltsim
