@@ -379,8 +379,10 @@ void Scheduler::choose_slow_moment() noexcept {
   ++stalled_count_;
   make_unrunnable(self);
   clock_.arm(clock_.now() + moment.duration, self.id);
+  if (listener_ != nullptr) listener_->held_up(self, moment.duration);
   Task* const other = next_after_stop();
   if (other != &self) switch_to(*other);
+  if (listener_ != nullptr) listener_->goes_on(self);
 }
 
 std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
