@@ -26,9 +26,9 @@ struct DecisionAddress {
 };
 
 struct AddressedDeviation {
-  DecisionAddress at;
+  DecisionAddress at{};
   std::uint32_t value = 0;  ///< task: the number of the one chosen; fault: its variant; answer
-  SlowMoment slow;          ///< slow_moment
+  SlowMoment slow{};        ///< slow_moment
 };
 
 /// Which deviations a search tries.

@@ -11,6 +11,7 @@
 #include "sim_clock/explore/random_generator.hpp"
 #include "sim_clock/explore/recording_strategy.hpp"
 #include "sim_clock/explore/same_failure.hpp"
+#include "sim_clock/trace/story.hpp"
 #include "sim_clock/trace/text_trace.hpp"
 
 namespace ltsim {
@@ -151,6 +152,7 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                               .message = one_line(outcome.message),
                               .deviations = recording.deviations()},
                  .choices_count = recording.deviations().size(),
+                 .story = {},
                  .messages = {outcome.message}};
 }
 
@@ -168,6 +170,9 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
   failure.at = report.at;
   failure.schedule = report.schedule;
   failure.one_minimal = report.one_minimal;
+  Story story{world_, failure.schedule};
+  static_cast<void>(replay(scenario, failure.schedule, &story));
+  failure.story = story.text(failure.outcome);
 }
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {

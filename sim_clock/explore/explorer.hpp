@@ -1,7 +1,7 @@
 // Runs a scenario again and again under a strategy and reports how it failed.
 //
 // What fails is made as small as the time given for it allows; then failures that differ in numbers of their
-// message only, and need the same kind of schedule, are one (same_failure.hpp).
+// message only, and need the same means, are one (same_failure.hpp).
 //
 // The first execution that fails in a new way is run a second time, with the same seed, to write its schedule
 // down; and of those that pass the 1st, 2nd, 4th, 8th ... are run twice as well. Two runs of a seed that
@@ -42,6 +42,7 @@ struct Failure {
   Schedule schedule;
   std::size_t choices_count = 0;      ///< that differed from the default in the execution itself
   bool one_minimal = false;           ///< without any one line of the schedule the failure is gone
+  std::string story;                  ///< of `schedule`, for a screen; empty where it was not made small
   std::vector<std::string> messages;  ///< of all executions that count as this failure
 };
 

@@ -1,6 +1,8 @@
 #include "sim_clock/explore/same_failure.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "sim_clock/explore/explorer.hpp"
 
@@ -11,16 +13,16 @@ constexpr std::string_view blanks = " \t\n";
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// "kernel/main before sem_wait handoff #2" without the occurrence.
-std::string_view place_of(const Deviation& deviation) noexcept {
-  return std::string_view{deviation.anchor}.substr(0, deviation.anchor.rfind('#'));
-}
-
-bool have_same_form(const std::vector<Deviation>& one, const std::vector<Deviation>& other) {
-  return std::equal(
-      one.begin(), one.end(), other.begin(), other.end(), [](const Deviation& a, const Deviation& b) {
-        return a.kind == b.kind && a.fault == b.fault && a.to_task == b.to_task && place_of(a) == place_of(b);
-      });
+/// What it takes to make the failure happen, sorted; where and for how long does not matter.
+std::vector<std::pair<Deviation::Kind, FaultKind>> means_of(const Schedule& schedule) {
+  std::vector<std::pair<Deviation::Kind, FaultKind>> means;
+  for (const Deviation& deviation : schedule.deviations) {
+    const bool is_slow =
+        deviation.kind == Deviation::Kind::pass_time;  // that, or a stall, often does equally
+    means.emplace_back(is_slow ? Deviation::Kind::stall : deviation.kind, deviation.fault);
+  }
+  std::sort(means.begin(), means.end());
+  return means;
 }
 
 }  // namespace
@@ -45,9 +47,13 @@ bool is_known_message(const Failure& failure, std::string_view message) {
 
 bool is_same_failure(const Failure& one, const Failure& other) {
   if (one.outcome == other.outcome) return true;
-  return one.outcome.kind == other.outcome.kind &&
-         without_numbers(one.outcome.message) == without_numbers(other.outcome.message) &&
-         have_same_form(one.schedule.deviations, other.schedule.deviations);
+  if (one.outcome.kind != other.outcome.kind ||
+      without_numbers(one.outcome.message) != without_numbers(other.outcome.message))
+    return false;
+  const auto means = means_of(one.schedule);
+  const auto other_means = means_of(other.schedule);
+  return std::includes(means.begin(), means.end(), other_means.begin(), other_means.end()) ||
+         std::includes(other_means.begin(), other_means.end(), means.begin(), means.end());
 }
 
 std::string without_numbers(std::string_view message) {

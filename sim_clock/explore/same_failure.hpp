@@ -1,8 +1,10 @@
 // When two failures are one.
 //
-// Outcome and message tell failures apart. Messages often hold numbers that change with the schedule ("request 2",
-// "after 1534us"), and then one bug would be told again and again. So messages that differ in numbers only are one
-// failure if their minimal schedules have the same form: the same lines but for occurrences, durations and answers.
+// Outcome and message tell failures apart. Messages often hold numbers that change with the schedule ("request
+// 2", "after 1534us"), and then one bug would be told again and again. So messages that differ in numbers only are
+// one failure, unless their minimal schedules need different means: one a switch, say, where the other
+// needs a lost post. If one needs what the other does and something more (the bug comes about a request later),
+// they are one.
 // Two bugs with one message are one failure: a message is the name of what broke.
 #pragma once
 

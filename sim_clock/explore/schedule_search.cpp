@@ -7,6 +7,7 @@ namespace ltsim {
 ScheduleSearch::End ScheduleSearch::deepen(const SearchFilter& filter, std::size_t length_max,
                                            Equivalence equivalence, double until) {
   const auto hash = [&] { return equivalence == Equivalence::exact ? trace_hash_ : strategy_.causal_hash(); };
+  if (budget_.used() >= until) return End::out_of_budget;
   if (leads_to_failure({})) return End::found;
   std::unordered_set<std::uint64_t> seen{hash()};
   std::vector<AddressedSchedule> to_extend{{}};
@@ -14,6 +15,7 @@ ScheduleSearch::End ScheduleSearch::deepen(const SearchFilter& filter, std::size
   for (std::size_t length = 1; length <= length_max; ++length) {
     std::vector<AddressedSchedule> to_extend_next;
     for (AddressedSchedule& schedule : to_extend) {
+      if (budget_.used() >= until) return End::out_of_budget;
       const auto next = alternatives(schedule, filter, false);
       schedule.emplace_back();
       for (const AddressedDeviation& deviation : next) {
@@ -37,6 +39,7 @@ ScheduleSearch::End ScheduleSearch::exchange(const AddressedSchedule& schedule, 
                                              double until) {
   for (std::size_t first = 0; first < schedule.size(); ++first) {
     for (std::size_t second = first + 1; second < schedule.size(); ++second) {
+      if (budget_.used() >= until) return End::out_of_budget;
       AddressedSchedule shorter;
       for (std::size_t i = 0; i < schedule.size(); ++i) {
         if (i != first && i != second) shorter.push_back(schedule[i]);

@@ -17,6 +17,7 @@ std::string describe(const Failure& failure, std::string_view strategy) {
       failure.seed, strategy, failure.choices_count, minimized, to_text(failure.at));
   for (const Deviation& deviation : failure.schedule.deviations)
     text += fmt::format("    {}\n", to_string(deviation));
+  text += failure.story;
   if (failure.count > 1) text += fmt::format("  {} executions failed so\n", failure.count);
   return text;
 }
