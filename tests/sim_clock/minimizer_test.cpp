@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_clock/explore/anchor_weakness.hpp"
 #include "sim_clock/explore/random_strategy.hpp"
 #include "sim_clock/explore/same_failure.hpp"
 #include "tests/sim_clock/world_fixture.hpp"
@@ -256,12 +257,70 @@ TEST_F(MinimizerTest, one_bug_whose_message_holds_other_numbers_each_time_is_one
   EXPECT_GE(report.failures[0].count, report.failures[0].messages.size());
 }
 
+Failure failure_of(std::string message, std::vector<Deviation::Kind> lines) {
+  Failure failure;
+  failure.outcome = {OutcomeKind::invariant, std::move(message)};
+  for (const Deviation::Kind kind : lines) {
+    failure.schedule.deviations.emplace_back();
+    failure.schedule.deviations.back().kind = kind;
+  }
+  return failure;
+}
+
+TEST(SameFailure, messages_that_differ_in_numbers_are_one_unless_each_needs_means_of_its_own) {
+  using enum Deviation::Kind;
+  const Failure lost = failure_of("request 1 is lost", {switch_task});
+  EXPECT_TRUE(is_same_failure(lost, failure_of("request 2 is lost", {switch_task})));
+  EXPECT_TRUE(is_same_failure(lost, failure_of("request 3 is lost", {switch_task, pass_time})));
+  EXPECT_FALSE(is_same_failure(lost, failure_of("request 2 is lost", {fault})));
+  EXPECT_FALSE(is_same_failure(lost, failure_of("answer 1 is lost", {switch_task})));
+  EXPECT_TRUE(is_same_failure(lost, failure_of("request 1 is lost", {fault})));
+}
+
 TEST(SameFailure, numbers_that_stand_alone_vary_and_those_in_a_word_tell_apart) {
   EXPECT_EQ(without_numbers("I1: request 2 took 1534us (at 0x7fff12)"),
             without_numbers("I1: request 31 took 2us (at 0x7)"));
   EXPECT_NE(without_numbers("I1: request 2"), without_numbers("I3: request 2"));
   EXPECT_NE(without_numbers("handoff.cpp:88"), without_numbers("handoff.cpp:12"));
   EXPECT_NE(without_numbers("waits in mutex-1"), without_numbers("waits in mutex-2"));
+}
+
+TEST(AnchorWeakness, what_the_compiler_or_the_time_decides_is_weaker_than_what_the_code_says) {
+  EXPECT_EQ(anchor_weakness("kernel/main before sem_wait handoff #1"), 0U);
+  EXPECT_EQ(anchor_weakness("kernel/main before atomic_load segment.state #1"), 0U);
+  EXPECT_EQ(anchor_weakness("kernel/main end"), 0U);
+  const char* const from_strong_to_weak[] = {
+      "k/m before sem_wait handoff #1", "k/m before sem_wait handoff #3", "k/m before mutex_lock mutex-1 #1",
+      "k/m before read segment.a #1",   "k/m before clock_read - #1",     "k/m before atomic_load memory #1"};
+  for (std::size_t i = 1; i < std::size(from_strong_to_weak); ++i)
+    EXPECT_LT(anchor_weakness(from_strong_to_weak[i - 1]), anchor_weakness(from_strong_to_weak[i])) << i;
+}
+
+// Of the places where the switch does the same, all but one are references that are counted.
+void counts_references(World& world) {
+  const auto counter = std::make_shared<std::atomic<int>>(0);
+  for (const char* name : {"one", "two"}) {
+    world.process("p").start(name, [counter] {
+      sem_t* const doorbell = sem_open("/doorbell", O_CREAT, 0600, 9);
+      const int before = *counter;
+      const std::shared_ptr<std::atomic<int>> copy = counter;
+      sem_wait(doorbell);
+      const std::shared_ptr<std::atomic<int>> another = counter;
+      *counter = before + 1;
+    });
+  }
+  world.run();
+  world.require(*counter == 2, "an increment was lost");
+}
+
+TEST_F(MinimizerTest, of_equivalent_places_the_one_is_kept_that_survives_a_rebuild) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const MinimizeReport report =
+        minimize(&counts_references, failing_schedule(&counts_references, seed), without_clock);
+    ASSERT_EQ(report.schedule.deviations.size(), 1U) << to_string(report.schedule);
+    EXPECT_NE(report.schedule.deviations[0].anchor.find("doorbell #1"), std::string::npos)
+        << to_string(report.schedule);
+  }
 }
 
 }  // namespace
