@@ -258,6 +258,8 @@ std::string Story::describe(const Deviation& deviation) const {
     case Deviation::Kind::stall:
       return fmt::format("{} is held up for {} {}", task, to_text(deviation.passes), place);
     case Deviation::Kind::fault:
+      if (deviation.fault == FaultKind::crash)
+        return fmt::format("{} is killed, {} being {}", deviation.process, task, place);
       return fmt::format("fault {} {} strikes {} {}", to_string(deviation.fault), deviation.answer, task,
                          place);
     case Deviation::Kind::choose:
