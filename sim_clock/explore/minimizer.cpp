@@ -1,7 +1,7 @@
 #include "sim_clock/explore/minimizer.hpp"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/anchor_weakness.hpp"
@@ -172,8 +172,9 @@ void Minimizer::strengthen_anchor(std::size_t line) {
     return place.at.ordinal > moved.at.ordinal ? place.at.ordinal - moved.at.ordinal
                                                : moved.at.ordinal - place.at.ordinal;
   };
-  std::stable_sort(places.begin(), places.end(),
-                   [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+    return std::pair{distance(a), a.at.ordinal} < std::pair{distance(b), b.at.ordinal};
+  });
   constexpr std::size_t places_max = 64;
   if (places.size() > places_max) places.resize(places_max);
   unsigned weakest = anchor_weakness(best_.deviations[line].anchor);

@@ -316,8 +316,9 @@ std::string Story::text(const Outcome& outcome) {
   std::vector<std::size_t> kept(all.size());
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i;
   if (kept.size() > lines_max - own_lines) {
-    std::stable_sort(kept.begin(), kept.end(),
-                     [&](std::size_t a, std::size_t b) { return all[a].weight > all[b].weight; });
+    std::sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
+      return all[a].weight != all[b].weight ? all[a].weight > all[b].weight : a < b;
+    });
     kept.resize(lines_max - own_lines);
     std::sort(kept.begin(), kept.end());
   }
