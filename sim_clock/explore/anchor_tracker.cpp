@@ -28,6 +28,18 @@ void AnchorTracker::blocks(const Task& task) noexcept {
   if (next_ != nullptr) next_->blocks(task);
 }
 
+void AnchorTracker::held_up(const Task& task, SimTime duration) noexcept {
+  // Who runs meanwhile is chosen while the task waits "in" its operation; what is chosen "before" it comes later.
+  stand_at(fmt::format("{} in {} {}", task.name, to_string(world_.scheduler().pending(task).kind),
+                       world_.objects().name(world_.scheduler().pending(task))));
+  if (next_ != nullptr) next_->held_up(task, duration);
+}
+
+void AnchorTracker::goes_on(const Task& task) noexcept {
+  anchor_ = arrived_at_[task.id];
+  if (next_ != nullptr) next_->goes_on(task);
+}
+
 void AnchorTracker::ends(const Task& task) noexcept {
   anchor_ = fmt::format("{} end", task.name);
   if (next_ != nullptr) next_->ends(task);

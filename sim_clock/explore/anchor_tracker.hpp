@@ -24,6 +24,8 @@ class AnchorTracker final : public StepListener {
   void arrives(const Task& task, const Operation& operation) noexcept override;
   void performs(const Task& task, const Operation& operation) noexcept override;
   void blocks(const Task& task) noexcept override;
+  void held_up(const Task& task, SimTime duration) noexcept override;
+  void goes_on(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
   void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;

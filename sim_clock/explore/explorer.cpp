@@ -7,12 +7,34 @@
 
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/hash_set.hpp"
+#include "sim_clock/explore/minimizer.hpp"
 #include "sim_clock/explore/random_generator.hpp"
 #include "sim_clock/explore/recording_strategy.hpp"
+#include "sim_clock/explore/same_failure.hpp"
+#include "sim_clock/trace/story.hpp"
 #include "sim_clock/trace/text_trace.hpp"
 
 namespace ltsim {
 namespace {
+
+/// Among those known; null if it is a new one.
+Failure* find_failure(std::vector<Failure>& failures, const Outcome& outcome) {
+  for (Failure& failure : failures) {
+    if (failure.outcome.kind == outcome.kind && is_known_message(failure, outcome.message)) return &failure;
+  }
+  return nullptr;
+}
+
+/// Adds it to those known, or to the one among them that it is.
+void add_failure(std::vector<Failure>& failures, Failure&& failure) {
+  for (Failure& known : failures) {
+    if (!is_same_failure(known, failure)) continue;
+    ++known.count;
+    known.messages.insert(known.messages.end(), failure.messages.begin(), failure.messages.end());
+    return;
+  }
+  failures.push_back(std::move(failure));
+}
 
 /// The first line in which two texts differ, of both.
 std::string first_difference(std::string_view one, std::string_view other) {
@@ -77,9 +99,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
       continue;
     }
     const Outcome outcome = world_.scheduler().outcome();
-    const auto known = std::find_if(report.failures.begin(), report.failures.end(),
-                                    [&](const Failure& failure) { return failure.outcome == outcome; });
-    if (known != report.failures.end()) {
+    if (Failure* const known = find_failure(report.failures, outcome)) {
       ++known->count;
       strategy.learn(summary);
       continue;
@@ -89,7 +109,8 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
     if (!settled || failure.outcome.passed()) throw not_repeatable(scenario, strategy, seed);
     failure.execution = execution;
     failure.count = 1;
-    report.failures.push_back(std::move(failure));
+    if (options.minimize_seconds.count() > 0) minimize(scenario, failure, options.minimize_seconds);
+    add_failure(report.failures, std::move(failure));
     if (!options.keep_going) break;
     summary.failed_anew = true;
     strategy.learn(summary);
@@ -129,8 +150,30 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                  .at = world_.now(),
                  .schedule = {.scenario = std::string{scenario.name},
                               .outcome = outcome.kind,
-                              .message = outcome.message,
-                              .deviations = recording.deviations()}};
+                              .message = one_line(outcome.message),
+                              .deviations = recording.deviations()},
+                 .choices_count = recording.deviations().size(),
+                 .story = {},
+                 .messages = {outcome.message}};
+}
+
+void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono::duration<double> seconds) {
+  // What a core does: so the end seldom depends on how busy the machine is.
+  constexpr double points_per_second = 20e6;
+  const MinimizeReport report = Minimizer{world_, scenario}.minimize(
+      failure.schedule, {.seconds_max = seconds,
+                         .points_max = static_cast<std::uint64_t>(seconds.count() * points_per_second),
+                         .numbers_matter = false});
+  if (!report.reproduced)
+    return;  // its anchors are not unique: the recorded schedule stays, for what it tells
+  failure.outcome = report.outcome;
+  failure.trace_hash = report.trace_hash;
+  failure.at = report.at;
+  failure.schedule = report.schedule;
+  failure.one_minimal = report.one_minimal;
+  Story story{world_, failure.schedule};
+  static_cast<void>(replay(scenario, failure.schedule, &story));
+  failure.story = story.text(failure.outcome);
 }
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {

@@ -1,5 +1,8 @@
 // Runs a scenario again and again under a strategy and reports how it failed.
 //
+// What fails is made as small as the time given for it allows; then failures that differ in numbers of their
+// message only, and need the same means, are one (same_failure.hpp).
+//
 // The first execution that fails in a new way is run a second time, with the same seed, to write its schedule
 // down; and of those that pass the 1st, 2nd, 4th, 8th ... are run twice as well. Two runs of a seed that
 // differ mean that something survived from one execution to the next or came from outside: nothing that was
@@ -25,16 +28,22 @@ struct ExploreOptions {
   std::uint64_t executions_max = 100'000;
   std::optional<std::chrono::duration<double>> seconds_max;  ///< of real time; looked at every 64 executions
   bool keep_going = false;  ///< go on after a failure and report each different one once
+  /// Real time for making the schedule of each different failure small; 0: it stays as it was recorded.
+  std::chrono::duration<double> minimize_seconds{0};
 };
 
 struct Failure {
-  Outcome outcome;
+  Outcome outcome;              ///< of `schedule`
   std::uint64_t execution = 0;  ///< the first that failed so; 1 is the first of the exploration
   std::uint64_t seed = 0;       ///< of that execution
   std::uint64_t count = 0;      ///< executions that failed so
   std::uint64_t trace_hash = 0;
   SimTime at{0};
   Schedule schedule;
+  std::size_t choices_count = 0;      ///< that differed from the default in the execution itself
+  bool one_minimal = false;           ///< without any one line of the schedule the failure is gone
+  std::string story;                  ///< of `schedule`, for a screen; empty where it was not made small
+  std::vector<std::string> messages;  ///< of all executions that count as this failure
 };
 
 struct ExploreReport {
@@ -84,6 +93,7 @@ class Explorer {
                         StepListener* listener);
 
  private:
+  void minimize(const Scenario& scenario, Failure& failure, std::chrono::duration<double> seconds);
   /// Whether the seed gives this trace again, or has come to give another one for good.
   [[nodiscard]] bool repeats(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
                              std::uint64_t hash);

@@ -1,4 +1,5 @@
-// The command line that every scenario program has: list, explore, replay.
+// The command line that every scenario program has: list, explore, replay,
+// minimize.
 //
 // Exit codes: 0 nothing found, 1 a failure was found, 2 bad usage or an unreadable file, 3 our own fault.
 #pragma once

@@ -24,6 +24,7 @@ struct ExploreArguments {
   std::vector<std::string> scenarios;
   ExploreOptions options;
   double seconds = 0;
+  double minimize_seconds = 2;
   std::string strategy = "random";
   std::string json_file;
   std::string out_folder = "out";
@@ -108,9 +109,15 @@ void add_explore_command(CLI::App& app, Command& chosen) {
   command->add_option("--seed", arguments->options.seed, "all choices follow from it")->capture_default_str();
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
+  command
+      ->add_option("--minimize-seconds", arguments->minimize_seconds,
+                   "real time for making the schedule of each failure small; 0: as it was found")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--json", arguments->json_file, "write a report for programs to this file");
   command->add_option("--out", arguments->out_folder, "folder for schedules")->capture_default_str();
   command->callback([=, &chosen] {
+    arguments->options.minimize_seconds = std::chrono::duration<double>{arguments->minimize_seconds};
     if (!seconds->empty()) {
       arguments->options.seconds_max = std::chrono::duration<double>{arguments->seconds};
       // Whoever gives a time and no number wants the time to decide.

@@ -7,7 +7,9 @@
 
 #include "sim_clock/explore/duration_text.hpp"
 #include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/same_failure.hpp"
 #include "sim_clock/scenario/command.hpp"
+#include "sim_clock/trace/story.hpp"
 #include "sim_clock/trace/text_trace.hpp"
 
 namespace ltsim {
@@ -25,7 +27,10 @@ int replay(const ReplayArguments& arguments) {
   World world;
   Explorer explorer{world};
   TextTrace trace{world};
-  const ReplayReport report = explorer.replay(scenario, schedule, arguments.trace.empty() ? nullptr : &trace);
+  Story story{world, schedule};
+  const bool tells_story = arguments.trace.empty();
+  StepListener* const listener = tells_story ? static_cast<StepListener*>(&story) : &trace;
+  const ReplayReport report = explorer.replay(scenario, schedule, listener);
   if (!arguments.trace.empty() && arguments.out_file.empty()) fmt::print("{}", trace.text());
   if (!arguments.out_file.empty()) write_asked_for_file(arguments.out_file, trace.text());
   if (report.divergence) {
@@ -38,7 +43,8 @@ int replay(const ReplayArguments& arguments) {
   fmt::print("{}  {}{}{}\n  at {}, trace hash {:016x}\n", scenario.name, to_string(report.outcome.kind),
              report.outcome.message.empty() ? "" : ": ", report.outcome.message, to_text(report.at),
              report.trace_hash);
-  if (report.outcome.kind != schedule.outcome || one_line(report.outcome.message) != schedule.message) {
+  if (tells_story) fmt::print("{}", story.text(report.outcome));
+  if (!same_failure(report.outcome, schedule)) {
     fmt::print("  not as recorded: {}{}{}\n", to_string(schedule.outcome),
                schedule.message.empty() ? "" : ": ", schedule.message);
   }

@@ -8,12 +8,16 @@
 namespace ltsim {
 
 std::string describe(const Failure& failure, std::string_view strategy) {
+  const std::size_t lines = failure.schedule.deviations.size();
+  const std::string minimized = lines == failure.choices_count ? "" : fmt::format(", minimized to {}", lines);
   std::string text = fmt::format(
-      "{}  {}: {}\n  execution {}, seed {:#x}, strategy {}; {} choices that differ from the default, at {}\n",
+      "{}  {}: {}\n  execution {}, seed {:#x}, strategy {}; {} choices that differ from the default{}, at "
+      "{}\n",
       failure.schedule.scenario, to_string(failure.outcome.kind), failure.outcome.message, failure.execution,
-      failure.seed, strategy, failure.schedule.deviations.size(), to_text(failure.at));
+      failure.seed, strategy, failure.choices_count, minimized, to_text(failure.at));
   for (const Deviation& deviation : failure.schedule.deviations)
     text += fmt::format("    {}\n", to_string(deviation));
+  text += failure.story;
   if (failure.count > 1) text += fmt::format("  {} executions failed so\n", failure.count);
   return text;
 }

@@ -330,11 +330,6 @@ Task* Scheduler::next_after_stop() noexcept {
   wake_due();
   while (runnable_count_ == 0) nobody_can_run();
   if (clock_.any_armed()) let_time_pass(false);
-  return next_runnable();
-}
-
-Task* Scheduler::next_runnable() noexcept {
-  while (runnable_count_ == 0) nobody_can_run();
   const auto options = candidates(0);
   return tasks_[options.size() == 1 ? options[0] : choose_task(options, running_->id, false)].get();
 }
@@ -391,8 +386,10 @@ void Scheduler::choose_slow_moment() noexcept {
   ++stalled_count_;
   make_unrunnable(self);
   clock_.arm(clock_.now() + moment.duration, self.id);
-  Task* const other = next_runnable();
+  if (listener_ != nullptr) listener_->held_up(self, moment.duration);
+  Task* const other = next_after_stop();
   if (other != &self) switch_to(*other);
+  if (listener_ != nullptr) listener_->goes_on(self);
 }
 
 std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {

@@ -136,8 +136,6 @@ class Scheduler {
   void leave(Task& self) noexcept;
   /// The next task after the running one stopped being runnable; null when all have finished.
   Task* next_after_stop() noexcept;
-  /// The next task, of which there is one.
-  Task* next_runnable() noexcept;
   void nobody_can_run() noexcept;
   TaskId choose_task(std::span<const std::uint64_t> options, TaskId running, bool running_gives_way) noexcept;
   void choose_slow_moment() noexcept;

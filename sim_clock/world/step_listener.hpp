@@ -21,6 +21,10 @@ class StepListener {
   virtual void performs(const Task& task, const Operation& operation) noexcept = 0;
   /// `task` cannot go on with its pending operation; the choice of the next task follows.
   virtual void blocks(const Task& task) noexcept = 0;
+  /// `task` gets no processor for `duration`, though it could run; the choice of the next task follows.
+  virtual void held_up(const Task& /*task*/, SimTime /*duration*/) noexcept {}
+  /// `task`, which was held up, stands again before its pending operation; the choices that follow are made there.
+  virtual void goes_on(const Task& /*task*/) noexcept {}
   /// `task` has ended; the choice of the next task follows.
   virtual void ends(const Task& task) noexcept = 0;
   /// The scenario asks for a value, in a task or (null) outside; the choice follows.

@@ -110,6 +110,36 @@ TEST_F(CommandLineTest, a_text_trace_shows_each_step_with_its_value) {
   EXPECT_NE(trace.find("sem_wait"), std::string::npos);
 }
 
+TEST_F(CommandLineTest, explore_makes_a_failure_small_and_tells_its_story) {
+  const Result found = ltsim("explore demo/parts-counter --strategy random");
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_NE(found.output.find("minimized to 1"), std::string::npos) << found.output;
+  EXPECT_NE(
+      found.output.find("      -> lathe/main is stopped before its write parts.count #1; mill/main runs\n"),
+      std::string::npos)
+      << found.output;
+  const Result replayed = ltsim("replay out/demo-parts-counter.schedule");
+  const std::string story = found.output.substr(found.output.find("  story: "));
+  EXPECT_NE(replayed.output.find(story.substr(0, story.find("  replay:"))), std::string::npos)
+      << replayed.output;
+}
+
+TEST_F(CommandLineTest, minimize_makes_small_what_was_recorded_in_full) {
+  EXPECT_EQ(ltsim("explore demo/parts-counter --strategy random --minimize-seconds 0").exit_code, 1);
+  const std::string recorded = read("out/demo-parts-counter.schedule");
+  EXPECT_GT(std::count(recorded.begin(), recorded.end(), '\n'), 6);
+  const Result minimized = ltsim("minimize out/demo-parts-counter.schedule --out small.schedule");
+  EXPECT_EQ(minimized.exit_code, 1);
+  EXPECT_NE(minimized.output.find("without any one of them the failure is gone"), std::string::npos)
+      << minimized.output;
+  const std::string small = read("small.schedule");
+  EXPECT_EQ(std::count(small.begin(), small.end(), '\n'), 5) << small;
+  EXPECT_EQ(read("out/demo-parts-counter.schedule"), recorded);
+  EXPECT_EQ(ltsim("replay small.schedule").exit_code, 1);
+  EXPECT_EQ(ltsim("minimize out/demo-parts-counter.schedule").exit_code, 1);
+  EXPECT_EQ(read("out/demo-parts-counter.schedule"), small);
+}
+
 TEST_F(CommandLineTest, a_schedule_that_no_longer_fits_is_refused_by_line) {
   write("old.schedule",
         "ltsim schedule 1\nscenario paper/one-request\nmemory sc\noutcome passed\n"
@@ -122,7 +152,7 @@ TEST_F(CommandLineTest, a_schedule_that_no_longer_fits_is_refused_by_line) {
 }
 
 TEST_F(CommandLineTest, a_failure_is_told_also_where_its_schedule_cannot_be_written) {
-  const Result result = ltsim("explore paper/time-out --out /proc/nowhere");
+  const Result result = ltsim("explore paper/time-out --minimize-seconds 0 --out /proc/nowhere");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("invariant: I"), std::string::npos) << result.output;
   EXPECT_NE(result.output.find("    switch    kernel/main"), std::string::npos) << result.output;
@@ -132,6 +162,7 @@ TEST_F(CommandLineTest, a_failure_is_told_also_where_its_schedule_cannot_be_writ
 
 TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
   write("bad.schedule", "ltsim schedule 1\nscenario paper/one-request\nswich a to b\n");
+  write("passes.schedule", "ltsim schedule 1\nscenario paper/one-request\noutcome invariant: I1: gone\n");
   write("foreign.schedule", "ltsim schedule 1\nscenario no/such\n");
   const struct {
     const char* arguments;
@@ -143,6 +174,9 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
                {"explore paper/one-request --strategy clever", "clever"},
                {"explore paper/one-request paper/time-out --json x", "--json"},
                {"replay no-such-file", "no-such-file: cannot be read"},
+               {"minimize no-such-file", "no-such-file: cannot be read"},
+               {"minimize passes.schedule", "passes.schedule: does not fail as it says"},
+               {"explore paper/one-request --minimize-seconds -1", "--minimize-seconds"},
                {"replay bad.schedule", "bad.schedule:3: \"swich\""},
                {"replay foreign.schedule", "no/such"}};
   for (const auto& c : cases) {
@@ -155,7 +189,7 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
 TEST_F(CommandLineTest, every_program_shows_a_printable_help) {
   for (const char* command :
        {LTSIM_PROGRAM " --help", LTSIM_PROGRAM " explore --help", LTSIM_PROGRAM " replay --help",
-        PLC_EMULATOR_PROGRAM " --help", CNC_KERNEL_PROGRAM " --help"}) {
+        LTSIM_PROGRAM " minimize --help", PLC_EMULATOR_PROGRAM " --help", CNC_KERNEL_PROGRAM " --help"}) {
     const Result result = shell(command);
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_GT(result.output.size(), 100U) << command;

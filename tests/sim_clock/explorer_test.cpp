@@ -226,6 +226,32 @@ TEST_F(ExplorerTest, a_slow_moment_of_one_task_lets_the_others_go_on) {
   EXPECT_FALSE(report.divergence) << report.divergence->reason;
 }
 
+TEST_F(ExplorerTest, choices_during_and_after_a_slow_moment_of_a_task_have_places_of_their_own) {
+  const Scenario scenario{"demo/slow", "", [](World& world) {
+                            world.process("p").start("slow", [] {
+                              static_cast<void>(time(nullptr));
+                              static_cast<void>(time(nullptr));
+                            });
+                            for (const char* name : {"one", "two"}) {
+                              world.process("p").start(name, [] {
+                                std::this_thread::sleep_for(5ms);
+                                static_cast<void>(time(nullptr));
+                                std::this_thread::sleep_for(5ms);
+                              });
+                            }
+                            world.run();
+                            world.violated("to have a schedule");
+                          }};
+  Explorer explorer{world()};
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    RandomStrategy strategy;
+    const Failure recorded = explorer.record(scenario, strategy, seed);
+    const ReplayReport replayed = explorer.replay(scenario, recorded.schedule, nullptr);
+    ASSERT_EQ(replayed.trace_hash, recorded.trace_hash) << to_string(recorded.schedule);
+    ASSERT_FALSE(replayed.divergence) << to_string(recorded.schedule);
+  }
+}
+
 TEST(HashSet, counts_different_values_up_to_its_bound) {
   HashSet set{5000};
   for (int round = 0; round < 2; ++round) {

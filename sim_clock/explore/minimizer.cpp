@@ -1,0 +1,244 @@
+#include "sim_clock/explore/minimizer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim_clock/check/signal_guard.hpp"
+#include "sim_clock/explore/anchor_weakness.hpp"
+#include "sim_clock/explore/recording_strategy.hpp"
+#include "sim_clock/explore/same_failure.hpp"
+#include "sim_clock/explore/search_filters.hpp"
+
+namespace ltsim {
+namespace {
+
+using namespace std::chrono_literals;
+
+// How far into the budget the stages may go: what comes after the search takes few executions, but it must come.
+constexpr double end_of_leaving_out = 0.6;
+constexpr double end_of_search = 0.9;
+constexpr double end_of_budget = 1.0;
+
+std::vector<Deviation> without(const std::vector<Deviation>& deviations, std::size_t begin, std::size_t end) {
+  std::vector<Deviation> rest;
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    if (i < begin || i >= end) rest.push_back(deviations[i]);
+  }
+  return rest;
+}
+
+bool is_slow_moment(const Deviation& deviation) noexcept {
+  return deviation.kind == Deviation::Kind::pass_time || deviation.kind == Deviation::Kind::stall;
+}
+
+}  // namespace
+
+MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOptions& options) {
+  const SignalGuard signals;
+  SearchBudget budget{options.executions_max, options.points_max, options.seconds_max};
+  budget_ = &budget;
+  is_the_failure_ = [&](const Outcome& outcome) { return same_failure(outcome, failing); };
+  MinimizeReport report;
+  report.schedule = failing;
+  // Twice: what is initialised on first use was so when the schedule was recorded.
+  static_cast<void>(attempt(failing.deviations));
+  if (auto given = attempt(failing.deviations)) {
+    report.reproduced = true;
+    best_ = std::move(*given);
+    leave_out_lines();
+    report.smallest = search_for_shorter();
+    if (!options.numbers_matter) {
+      // Only now: a search that may change the numbers could change the bug as well.
+      is_the_failure_ = [&](const Outcome& outcome) { return alike_failure(outcome, failing); };
+      leave_out_lines();
+    }
+    strengthen_anchors();
+    shrink_magnitudes();
+    report.one_minimal = leave_out_lines();
+    report.schedule.deviations = best_.deviations;
+    report.schedule.message = one_line(best_.outcome.message);
+    report.outcome = best_.outcome;
+    report.trace_hash = best_.trace_hash;
+    report.at = best_.at;
+  }
+  report.executions = budget.executions();
+  budget_ = nullptr;
+  return report;
+}
+
+std::optional<Minimizer::Attempt> Minimizer::record(Strategy& strategy, AnchorTracker& anchors) {
+  AddressRecorder addresses{strategy};
+  RecordingStrategy recording{addresses, world_, anchors};
+  std::uint64_t hash = 0;
+  bool simulable = true;
+  try {
+    hash = explorer_.execute(scenario_, recording, 0, &anchors);
+  } catch (const Explorer::NotSimulable&) {
+    simulable = false;
+  }
+  budget_->use(world_.scheduler().points());
+  const Outcome& outcome = world_.scheduler().outcome();
+  if (!simulable || outcome.passed() || !is_the_failure_(outcome)) return std::nullopt;
+  return Attempt{.deviations = recording.deviations(),
+                 .addressed = addresses.deviations(),
+                 .outcome = outcome,
+                 .trace_hash = hash,
+                 .at = world_.now()};
+}
+
+std::optional<Minimizer::Attempt> Minimizer::attempt(const std::vector<Deviation>& deviations) {
+  AnchorTracker anchors{world_, nullptr};
+  ReplayStrategy replay{deviations, world_, anchors};
+  return record(replay, anchors);
+}
+
+std::optional<Minimizer::Attempt> Minimizer::attempt(const AddressedSchedule& addressed) {
+  AnchorTracker anchors{world_, nullptr};
+  AddressedStrategy strategy;
+  strategy.set_deviations(addressed);
+  const auto recorded = record(strategy, anchors);
+  if (!recorded) return std::nullopt;
+  auto replayed = attempt(recorded->deviations);
+  if (!replayed || replayed->trace_hash != recorded->trace_hash) return std::nullopt;
+  return replayed;
+}
+
+bool Minimizer::leave_out_lines() {
+  std::size_t chunk = std::max<std::size_t>(best_.deviations.size(), 1);
+  while (true) {
+    bool shorter = false;
+    for (std::size_t begin = 0; begin < best_.deviations.size();) {
+      if (!has_budget(best_.deviations.size() > 16 ? end_of_leaving_out : end_of_budget)) return false;
+      auto rest = attempt(without(best_.deviations, begin, begin + chunk));
+      if (rest && rest->deviations.size() < best_.deviations.size()) {
+        best_ = std::move(*rest);
+        shorter = true;  // what lies at `begin` now is the next piece
+      } else {
+        begin += chunk;
+      }
+    }
+    if (chunk == 1 && !shorter) return true;
+    if (!shorter || chunk > best_.deviations.size()) chunk = std::max<std::size_t>(chunk / 2, 1);
+  }
+}
+
+bool Minimizer::search_for_shorter() {
+  const auto accept = [this](const AddressedSchedule& found) {
+    auto shorter = attempt(found);
+    if (!shorter || shorter->deviations.size() >= best_.deviations.size()) return false;
+    best_ = std::move(*shorter);
+    return true;
+  };
+  ScheduleSearch search{explorer_, world_, scenario_, is_the_failure_, accept, *budget_};
+  // A stage that comes to no end leaves half of the rest to the others.
+  const auto half_of_the_rest = [this] { return (budget_->used() + end_of_search) / 2; };
+  const auto deepen = [&](const SearchFilter& filter, ScheduleSearch::Equivalence equivalence, double until) {
+    if (best_.deviations.empty()) return true;
+    const auto end = search.deepen(filter, best_.deviations.size() - 1, equivalence, until);
+    return end != ScheduleSearch::End::out_of_budget;  // what is found first is the smallest
+  };
+  for (const Breadth breadth : {Breadth::own_choices, Breadth::own_kinds, Breadth::everything}) {
+    deepen(search_filter(breadth, best_.addressed), ScheduleSearch::Equivalence::causal, half_of_the_rest());
+    while (best_.deviations.size() > 2 &&
+           search.exchange(best_.addressed, search_filter(breadth, best_.addressed), half_of_the_rest()) ==
+               ScheduleSearch::End::found) {
+      leave_out_lines();
+    }
+  }
+  return deepen(search_filter(Breadth::everything, best_.addressed), ScheduleSearch::Equivalence::exact,
+                end_of_search);
+}
+
+void Minimizer::strengthen_anchors() {
+  for (std::size_t line = 0; line < best_.deviations.size() && has_budget(end_of_budget); ++line) {
+    if (anchor_weakness(best_.deviations[line].anchor) != 0) strengthen_anchor(line);
+  }
+}
+
+void Minimizer::strengthen_anchor(std::size_t line) {
+  const AddressedDeviation moved = best_.addressed[line];
+  AddressedSchedule others = best_.addressed;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(line));
+  SearchFilter filter = search_filter(Breadth::own_choices, {moved});
+  ScheduleSearch search{explorer_, world_, scenario_, is_the_failure_, {}, *budget_};
+  std::vector<AddressedDeviation> places = search.alternatives(others, filter, true);
+  // The same choice at another moment of the same task.
+  std::erase_if(places, [&](const AddressedDeviation& place) {
+    return place.at.question != moved.at.question || place.at.whose != moved.at.whose ||
+           place.value != moved.value || place.slow.duration != moved.slow.duration ||
+           place.slow.others_go_on != moved.slow.others_go_on;
+  });
+  const auto distance = [&](const AddressedDeviation& place) {
+    return place.at.ordinal > moved.at.ordinal ? place.at.ordinal - moved.at.ordinal
+                                               : moved.at.ordinal - place.at.ordinal;
+  };
+  std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+    return std::pair{distance(a), a.at.ordinal} < std::pair{distance(b), b.at.ordinal};
+  });
+  constexpr std::size_t places_max = 64;
+  if (places.size() > places_max) places.resize(places_max);
+  unsigned weakest = anchor_weakness(best_.deviations[line].anchor);
+  for (const AddressedDeviation& place : places) {
+    if (weakest == 0 || !has_budget(end_of_budget)) return;
+    AddressedSchedule changed = others;
+    changed.push_back(place);
+    auto found = attempt(changed);
+    if (!found || found->deviations.size() != best_.deviations.size()) continue;
+    const auto same_place = [&](const AddressedDeviation& deviation) { return deviation.at == place.at; };
+    const auto at = std::find_if(found->addressed.begin(), found->addressed.end(), same_place);
+    if (at == found->addressed.end()) continue;
+    const auto index = static_cast<std::size_t>(at - found->addressed.begin());
+    const unsigned weakness = anchor_weakness(found->deviations[index].anchor);
+    // Passing another line would change which line the next one to be looked at is.
+    if (weakness >= weakest || index != line) continue;
+    weakest = weakness;
+    best_ = std::move(*found);
+  }
+}
+
+void Minimizer::shrink_magnitudes() {
+  for (std::size_t line = 0; line < best_.deviations.size(); ++line) {
+    const Deviation given = best_.deviations[line];
+    Deviation changed = given;
+    if (is_slow_moment(given)) {
+      shrink_duration(line);
+    } else if (given.kind == Deviation::Kind::choose) {
+      for (changed.answer = 1; changed.answer < given.answer; ++changed.answer) {
+        if (!has_budget(end_of_budget) || still_fails_with(line, changed)) break;
+      }
+    }
+  }
+}
+
+void Minimizer::shrink_duration(std::size_t line) {
+  const Attempt as_given = best_;
+  std::optional<Attempt> smallest;
+  Deviation changed = as_given.deviations[line];
+  // Rather a round one that is a little longer than one such as 131072us.
+  const SimTime longest = 2 * changed.passes;
+  for (const SimTime duration : round_durations) {
+    if (duration > longest || !has_budget(end_of_budget)) break;
+    changed.passes = duration;
+    best_ = as_given;
+    if (!still_fails_with(line, changed)) continue;
+    if (!smallest) smallest = best_;
+    // After a rebuild things take a few steps more or less: on the edge the failure would be gone.
+    const Attempt candidate = best_;
+    changed.passes = duration - std::min<SimTime>(duration / 4, 1us);
+    if (!still_fails_with(line, changed)) continue;
+    best_ = candidate;
+    return;
+  }
+  best_ = smallest.value_or(as_given);
+}
+
+bool Minimizer::still_fails_with(std::size_t line, const Deviation& changed) {
+  std::vector<Deviation> deviations = best_.deviations;
+  deviations[line] = changed;
+  auto found = attempt(deviations);
+  if (!found || found->deviations.size() != deviations.size()) return false;
+  best_ = std::move(*found);
+  return true;
+}
+
+}  // namespace ltsim
