@@ -49,7 +49,7 @@ SlowMoment AddressedStrategy::slow_moment(const SlowMomentChoice& choice) noexce
   if (lists(Question::slow_moment) && allows(*filter_, choice.running)) {
     const auto list = [&](SimTime duration) {
       if (filter_->whole_machine) alternatives_.push_back({.at = address, .slow = {.duration = duration}});
-      if (filter_->single_tasks)
+      if (filter_->single_tasks && choice.running_can_be_held_up)
         alternatives_.push_back({.at = address, .slow = {.duration = duration, .others_go_on = true}});
     };
     if (filter_->until_next_timer && choice.until_next_timer != VirtualClock::never &&

@@ -90,7 +90,8 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
     report.decisions += world_.scheduler().decisions();
     report.points += world_.scheduler().points();
     traces.insert(hash);
-    ExecutionSummary summary{.points = world_.scheduler().points()};
+    ExecutionSummary summary{.points = world_.scheduler().points(),
+                             .new_states = world_.coverage().new_in_execution()};
     if (world_.scheduler().outcome().passed()) {
       if (std::has_single_bit(execution) && !repeats(scenario, strategy, seed, hash)) {
         throw not_repeatable(scenario, strategy, seed);
