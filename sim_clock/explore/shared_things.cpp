@@ -20,6 +20,7 @@ std::uint64_t key_of(const Operation& operation) noexcept {
 }  // namespace
 
 void SharedThings::begin() noexcept {
+  users_ = learned_users_;
   if (count_ == learned_count_) return;
   count_ = learned_count_;
   slots_.fill(0);

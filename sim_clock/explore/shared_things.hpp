@@ -24,7 +24,10 @@ class SharedThings {
 
   /// An execution begins: what was seen since the last learn() is forgotten.
   void begin() noexcept;
-  void learn() noexcept { learned_count_ = count_; }
+  void learn() noexcept {
+    learned_count_ = count_;
+    learned_users_ = users_;
+  }
 
   /// @return 0 to count() - 1, or none
   [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept;
@@ -48,6 +51,7 @@ class SharedThings {
   std::array<std::uint8_t, slots_count> slots_{};  // a hash table: number of the thing plus one; 0: free
   std::size_t count_ = 0;
   std::size_t learned_count_ = 0;
+  std::array<TaskId, things_max> learned_users_{};
 };
 
 }  // namespace ltsim
