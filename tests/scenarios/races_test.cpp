@@ -23,8 +23,10 @@ namespace {
 
 constexpr std::uint64_t seeds_count = 5;
 constexpr std::uint64_t executions_until_found_max = 40'000;
-/// Ten times what the search needed is asked of the corrected program, but not more than takes a moment.
-constexpr std::uint64_t silent_executions_max = 10'000;
+/// Of the corrected program: ten times what the search needed. At least so many, for a cure that is none may hide
+/// the race without removing it; at most so many, for the test is to take a moment.
+constexpr std::uint64_t silent_executions_min = 5'000;
+constexpr std::uint64_t silent_executions_max = 30'000;
 
 ltsim::World& world() {
   static ltsim::World only;
@@ -55,7 +57,8 @@ TEST_P(ShapeTest, is_found_from_every_seed_and_its_corrected_program_is_silent) 
     EXPECT_TRUE(shape.is_finding(outcome)) << to_string(outcome.kind) << ": " << outcome.message;
     most_needed = std::max(most_needed, report.executions);
   }
-  const auto silent = explore(shape.corrected_name, 1, std::min(10 * most_needed, silent_executions_max));
+  const auto silent = explore(shape.corrected_name, 1,
+                              std::clamp(10 * most_needed, silent_executions_min, silent_executions_max));
   EXPECT_TRUE(silent.failures.empty()) << silent.failures.front().outcome.message << '\n'
                                        << to_string(silent.failures.front().schedule);
 }
