@@ -15,7 +15,7 @@ SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
   std::size_t change_points_count = 0;  // d - 1
   while (change_points_count < 5 && generator().below(3) != 0) ++change_points_count;
   change_points().begin(generator(), change_points_count);
-  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
+  return draw_time_mode();
 }
 
 void PctStrategy::learn(const ExecutionSummary& summary) noexcept {

@@ -11,7 +11,7 @@ SamplingStrategy::TimeMode PosStrategy::begin() noexcept {
   for (std::size_t task = 0; task < tasks_seen_; ++task) looks_[task].count = 0;
   tasks_seen_ = 0;
   sleeps_are_free_ = generator().below(2) == 0;
-  return generator().below(2) == 0 ? TimeMode::silence : TimeMode::clock;
+  return draw_time_mode();
 }
 
 std::size_t PosStrategy::choose_task(const TaskChoice& choice) noexcept {

@@ -13,27 +13,28 @@ constexpr std::uint32_t orders_of_magnitude = 20;  // 1 us << 20 is about 1 s
 
 void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   generator_ = RandomGenerator{seed};
-  period_ = period_learned_;
-  things_.begin();
+  experience_->period = experience_->period_learned;
+  experience_->things.begin();
   all_matters_ = generator_.below(4) == 0;
   time_mode_ = begin();
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
   slow_moments().begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
-  for (Occasions& fault : faults_)
-    fault.begin(generator_, generator_.below(2) == 0 ? 0 : 1 + generator_.below(2));
+  for (Occasions& fault : experience_->faults)
+    fault.begin(generator_, generator_.below(4) == 0 ? 0 : 1 + generator_.below(2));
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
-  period_learned_ = period_;
-  things_.learn();
+  experience_->period_learned = experience_->period;
+  experience_->things.learn();
   if (slow_moments().passed() != 0) slow_moments().learn();
-  for (Occasions& fault : faults_) {
+  for (Occasions& fault : experience_->faults) {
     if (fault.passed() != 0) fault.learn();
   }
 }
 
 SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
-  if (choice.until_next_timer != VirtualClock::never) period_ = std::max(choice.until_next_timer, SimTime{1});
+  if (choice.until_next_timer != VirtualClock::never)
+    experience_->period = std::max(choice.until_next_timer, SimTime{1});
   if (!choice.running_can_be_held_up && time_mode_ != TimeMode::clock) return {};
   switch (time_mode_) {
     case TimeMode::bursts:
@@ -48,13 +49,20 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
   return {};
 }
 
+SamplingStrategy::TimeMode SamplingStrategy::draw_time_mode() noexcept {
+  const std::uint32_t drawn = generator_.below(8);
+  if (drawn == 0) return TimeMode::bursts;
+  return drawn < 4 ? TimeMode::silence : TimeMode::clock;
+}
+
 SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
-  if (period_ != SimTime{0} && period_ <= longest_silence && generator_.below(4) != 0) {
+  const SimTime period = experience_->period;
+  if (period != SimTime{0} && period <= longest_silence && generator_.below(4) != 0) {
     // 1, 2 to 3, 4 to 7, 8 to 15: as often each.
     const std::uint32_t order = generator_.below(4);
     const std::uint32_t multiple = (std::uint32_t{1} << order) + generator_.below(std::uint32_t{1} << order);
     const bool others_go_on = multiple > 1 || generator_.below(2) == 1;
-    return {.duration = std::min(period_ * multiple, longest_silence), .others_go_on = others_go_on};
+    return {.duration = std::min(period * multiple, longest_silence), .others_go_on = others_go_on};
   }
   const std::uint32_t order = generator_.below(orders_of_magnitude + 1);
   const SimTime least = shortest_slow_moment * (std::int64_t{1} << order);
@@ -62,19 +70,19 @@ SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
 }
 
 std::size_t SamplingStrategy::note_use(TaskId task, const Operation& operation) noexcept {
-  const std::size_t thing = things_.thing_of(operation);
-  if (thing != SharedThings::none) things_.use(thing, task);
+  const std::size_t thing = experience_->things.thing_of(operation);
+  if (thing != SharedThings::none) experience_->things.use(thing, task);
   return thing;
 }
 
 bool SamplingStrategy::matters(const Operation& operation) noexcept {
   if (all_matters_) return true;
-  const std::size_t thing = things_.thing_of(operation);
-  return thing != SharedThings::none && things_.is_shared(thing);
+  const std::size_t thing = experience_->things.thing_of(operation);
+  return thing != SharedThings::none && experience_->things.is_shared(thing);
 }
 
 std::size_t SamplingStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {
-  if (faults_[static_cast<std::size_t>(kind)].pass() == 0) return 0;
+  if (experience_->faults[static_cast<std::size_t>(kind)].pass() == 0) return 0;
   return 1 + generator_.below(static_cast<std::uint32_t>(variants_count));
 }
 

@@ -14,7 +14,7 @@
 // What matters. In three executions of four the strategies give their attention to operations on things that
 // several tasks use (SharedThings), as far as the executions before have shown; in the fourth to all.
 //
-// Faults. Of the kinds that are granted, each is on in every second execution, and then strikes at places
+// Faults. Of the kinds that are granted, each is on in three executions of four, and then strikes at places
 // drawn uniformly from its occasions.
 #pragma once
 
@@ -27,8 +27,23 @@
 
 namespace ltsim {
 
+/// What the executions so far have shown of a program, whichever strategy made their choices.
+struct Experience {
+  SharedThings things;
+  SimTime period{0};          ///< the last time to the next timer that was seen; 0: none yet
+  SimTime period_learned{0};  ///< the same at the end of the last execution that counts
+  std::array<Occasions, fault_kinds_count> faults;
+};
+
 class SamplingStrategy : public Strategy {
  public:
+  SamplingStrategy() = default;
+  SamplingStrategy(const SamplingStrategy&) = delete;
+  SamplingStrategy& operator=(const SamplingStrategy&) = delete;
+
+  /// Learns together with others; `experience` must outlive the strategy.
+  void share(Experience& experience) noexcept { experience_ = &experience; }
+
   void begin_execution(std::uint64_t seed) noexcept final;
   void learn(const ExecutionSummary& summary) noexcept override;
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept final;
@@ -40,6 +55,8 @@ class SamplingStrategy : public Strategy {
 
   /// Draws what the kind of strategy needs for an execution. @return how time passes in it
   virtual TimeMode begin() noexcept = 0;
+  /// Each of the three: the clock in every second execution, bursts in one of eight.
+  [[nodiscard]] TimeMode draw_time_mode() noexcept;
   /// In time mode `clock`, with a timer armed: whether time goes on to the next timer before anybody runs.
   [[nodiscard]] virtual bool clock_goes_first(const SlowMomentChoice& /*choice*/) noexcept { return false; }
 
@@ -49,9 +66,9 @@ class SamplingStrategy : public Strategy {
   [[nodiscard]] bool matters(const Operation& operation) noexcept;
 
   [[nodiscard]] bool all_matters() const noexcept { return all_matters_; }
-  [[nodiscard]] const SharedThings& things() const noexcept { return things_; }
+  [[nodiscard]] const SharedThings& things() const noexcept { return experience_->things; }
   [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept {
-    return things_.thing_of(operation);
+    return experience_->things.thing_of(operation);
   }
   [[nodiscard]] RandomGenerator& generator() noexcept { return generator_; }
 
@@ -63,15 +80,13 @@ class SamplingStrategy : public Strategy {
 
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
-  SimTime period_{0};          // the last time to the next timer that was seen; 0: none yet
-  SimTime period_learned_{0};  // the same at the end of the last execution that counts
-  unsigned burst_bits_ = 1;    // mode `bursts`: a slow moment has the probability 2^-bits
-  SharedThings things_;
+  unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
+  Experience own_experience_;
+  Experience* experience_ = &own_experience_;
   bool all_matters_ = false;
   // The two kinds of executions have numbers of occasions of their own.
   Occasions slow_moments_;
   Occasions slow_moments_where_all_matters_;
-  std::array<Occasions, fault_kinds_count> faults_;
 };
 
 }  // namespace ltsim

@@ -17,11 +17,11 @@ SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
     passed_[everything][task] = 0;
   }
   clock_left_ = 0;
-  const bool clock_takes_part = generator().below(2) == 0;
-  if (clock_takes_part) clock_left_ = std::uint64_t{1} << generator().below(7);
+  const TimeMode mode = draw_time_mode();
+  if (mode == TimeMode::clock) clock_left_ = std::uint64_t{1} << generator().below(7);
   left_sum_ += clock_left_;
   next_ = draw_next();
-  return clock_takes_part ? TimeMode::clock : TimeMode::silence;
+  return mode;
 }
 
 std::size_t SurwStrategy::draw_interesting() noexcept {
@@ -29,7 +29,11 @@ std::size_t SurwStrategy::draw_interesting() noexcept {
   std::array<std::size_t, SharedThings::things_max> shared{};
   std::uint32_t shared_count = 0;
   for (std::size_t thing = 0; thing < things().count(); ++thing) {
-    if (things().is_shared(thing)) shared[shared_count++] = thing;
+    const auto& counts = expected_[thing];  // nothing, where another strategy has seen it
+    const bool is_known =
+        std::any_of(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(tasks_seen_),
+                    [](std::uint32_t count) { return count != 0; });
+    if (is_known && things().is_shared(thing)) shared[shared_count++] = thing;
   }
   return shared_count == 0 ? everything : shared[generator().below(shared_count)];
 }

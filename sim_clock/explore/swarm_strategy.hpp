@@ -21,6 +21,10 @@ namespace ltsim {
 
 class SwarmStrategy final : public Strategy {
  public:
+  SwarmStrategy() noexcept {
+    for (SamplingStrategy* const member : members_) member->share(experience_);
+  }
+
   [[nodiscard]] std::string_view name() const noexcept override { return "swarm"; }
   void begin_execution(std::uint64_t seed) noexcept override;
   void learn(const ExecutionSummary& summary) noexcept override;
@@ -43,14 +47,15 @@ class SwarmStrategy final : public Strategy {
   enum Member : std::size_t { random, pct, pos, surw, stall };
   static constexpr std::size_t members_count = 5;
 
+  Experience experience_;
   RandomStrategy random_;
   PctStrategy pct_;
   PosStrategy pos_;
   SurwStrategy surw_;
   StallStrategy stall_;
   std::array<SamplingStrategy*, members_count> members_{&random_, &pct_, &pos_, &surw_, &stall_};
-  static constexpr std::array<Member, 16> cycle{pos,    surw, random, pos,   surw, pos,  pct,    pos,
-                                                random, surw, pos,    stall, pos,  surw, random, pos};
+  static constexpr std::array<Member, 16> cycle{pos,  surw, pct, surw, pos,   random, surw, pos,
+                                                surw, pos,  pct, pos,  stall, surw,   pos,  random};
   std::uint64_t executions_ = 0;                       // that count
   std::array<std::uint32_t, members_count> yields_{};  // of late
   std::size_t drawn_ = 0;
