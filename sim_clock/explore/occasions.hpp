@@ -46,11 +46,18 @@ class Occasions {
   /// Occasions of this execution so far.
   [[nodiscard]] std::uint64_t passed() const noexcept { return passed_; }
 
+  [[nodiscard]] bool any_hit() const noexcept { return next_ != 0; }
+
   /// The execution has ended and counts.
-  void learn() noexcept {
+  /// @param seen_all  false: there may have been more occasions than were passed, so the estimate is not lowered
+  void learn(bool seen_all = true) noexcept {
     constexpr std::uint64_t most = std::uint64_t{1} << 30U;
     const auto seen = static_cast<std::uint32_t>(std::min(passed_, most));
-    estimate_ = std::max({seen, is_learned_ ? estimate_ - (estimate_ + 15) / 16 : 0, 1U});
+    estimate_ = std::max({seen,
+                          !is_learned_ ? 0
+                          : seen_all   ? estimate_ - (estimate_ + 15) / 16
+                                       : estimate_,
+                          1U});
     is_learned_ = true;
   }
 

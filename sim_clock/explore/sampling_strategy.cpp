@@ -28,7 +28,8 @@ void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
   experience_->things.learn();
   if (slow_moments().passed() != 0) slow_moments().learn();
   for (Occasions& fault : experience_->faults) {
-    if (fault.passed() != 0) fault.learn();
+    // A fault that has struck as often as it may is not asked for any more.
+    if (fault.passed() != 0) fault.learn(!fault.any_hit());
   }
 }
 
