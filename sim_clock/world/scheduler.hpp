@@ -166,7 +166,8 @@ class Scheduler {
   void wake_due() noexcept;
   void make_runnable(Task& task) noexcept;
   void make_unrunnable(const Task& task) noexcept;
-  [[nodiscard]] std::string describe_waiting() const;
+  /// Notes what the task does in the fair tail, and ends the execution where that has lasted long enough.
+  void pass_fair_tail(Task& task, const Operation& operation) noexcept;
 
   void mix(std::uint64_t word) noexcept { hash_ = std::rotl((hash_ ^ word) * 0x9e3779b97f4a7c15U, 27); }
 

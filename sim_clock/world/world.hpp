@@ -185,7 +185,7 @@ class World {
   /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
   /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
-  /// A race is the outcome from here on if there is nothing worse.
+  /// An execution that has passed up to here still fails if there was a race, or else if a mutex is held.
   void end_execution() noexcept;
 
   /// Races, memory that changed unseen and coverage: on or off in the executions that begin from now on. Off
@@ -209,6 +209,7 @@ class World {
   [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
+  [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
@@ -255,6 +256,9 @@ class World {
   void choose_clock_step() noexcept;
 
   [[nodiscard]] static WaitKey join_key(TaskId task) noexcept { return std::uint64_t{1} << 60U | task; }
+  [[nodiscard]] static bool is_join_key(WaitKey key) noexcept { return key >> 60U == 1; }
+  /// @param key  one for which is_join_key() holds
+  [[nodiscard]] static TaskId task_of_join_key(WaitKey key) noexcept { return static_cast<TaskId>(key); }
 
  private:
   static constexpr unsigned execution_number_bits = 40;
