@@ -45,6 +45,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   has_run_ = false;
   cpu_ = Cpu::many;
   ready_ever_ = 0;
+  fetches_are_watched_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -181,6 +182,8 @@ void Scheduler::point(Operation operation) noexcept {
   if (strategy_follows_steps_) strategy_->performs(self.id, operation);
   if (listener_ != nullptr) [[unlikely]]
     listener_->performs(self, operation);
+  if (fetches_are_watched_) [[unlikely]]
+    world_.fetches().performs(self, operation);
 }
 
 bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {

@@ -92,6 +92,9 @@ class Scheduler {
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
 
+  /// From now on, in this execution, World::single_fetch() is told each step.
+  void watch_fetches() noexcept { fetches_are_watched_ = true; }
+
   // --- priorities; they matter on Cpu::one_fifo only (one_fifo.cpp) ---
 
   /// @param priority      1 to 99; 0: none
@@ -198,6 +201,7 @@ class Scheduler {
   bool strategy_follows_steps_ = false;
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;
+  bool fetches_are_watched_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

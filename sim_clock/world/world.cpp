@@ -162,6 +162,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   mutexes_.reset();
   faults_.reset();
   damages_.reset();
+  fetches_.reset();
   processes_count_ = 0;
 }
 
