@@ -23,7 +23,8 @@ struct Mutexes::State {
     inconsistent,     // locked by one who was told
     not_recoverable,  // who was told unlocked it without pthread_mutex_consistent()
   } health;
-  std::uint32_t unused[3];
+  std::uint32_t number;  // of the mutex, from 0, in this execution
+  std::uint32_t unused[2];
 };
 
 namespace {
@@ -44,13 +45,6 @@ WaitKey wait_key(const void* address, bool shared) noexcept {
   return shared ? Segments::canonical(address) : reinterpret_cast<WaitKey>(address);
 }
 
-/// Conditions and futex words share their addresses with nothing else that is waited for, but a mutex may be
-/// the first member of a structure whose address is waited for too.
-WaitKey mutex_key(const void* address, std::int32_t kind) noexcept {
-  constexpr std::int32_t shared_between_processes = 128;
-  return wait_key(address, (kind & shared_between_processes) != 0) | std::uint64_t{1} << 61U;
-}
-
 /// glibc: nptl/pthreadP.h, PTHREAD_MUTEX_PRIO_INHERIT_NP.
 bool inherits_priority(std::int32_t kind) noexcept { return (kind & 32) != 0; }
 
@@ -61,8 +55,15 @@ WaitKey condition_key(const pthread_cond_t* condition) noexcept {
 
 }  // namespace
 
+/// Conditions and futex words share their addresses with nothing else that is waited for, but a mutex may be
+/// the first member of a structure whose address is waited for too.
+WaitKey Mutexes::mutex_key(const void* address, std::int32_t kind) noexcept {
+  constexpr std::int32_t shared_between_processes = 128;
+  return wait_key(address, (kind & shared_between_processes) != 0) | mutex_key_mark;
+}
+
 void Mutexes::reset() noexcept {
-  mutexes_count_ = 0;
+  locks_.clear();
   robust_held_.clear();
 }
 
@@ -70,13 +71,15 @@ Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
   static_assert(sizeof(State) == sizeof(pthread_mutex_t));
   static_assert(offsetof(State, kind) == offsetof(pthread_mutex_t, __data.__kind));
   auto& state = *reinterpret_cast<State*>(mutex);
-  if (state.execution != world_.execution_number()) {
+  if (state.execution != world_.execution_number() || state.number >= locks_.size()) {
     state.owner_plus_one = 0;
     state.locked_count = 0;
     state.health = State::Health::sound;
     state.execution = world_.execution_number();
     const GhostScope ghost;
-    state.object = world_.objects().add(fmt::format("mutex-{}", ++mutexes_count_));
+    state.number = static_cast<std::uint32_t>(locks_.size());
+    state.object = world_.objects().add(fmt::format("mutex-{}", locks_.size() + 1));
+    locks_.push_back({.object = state.object, .owner_plus_one = 0});
     state_changed(state);
   }
   return state;
@@ -126,7 +129,7 @@ int Mutexes::acquire(State& state, const void* address, OperationKind kind, Dead
 
 int Mutexes::take(State& state, const void* address) noexcept {
   if (state.health == State::Health::not_recoverable) return ENOTRECOVERABLE;
-  state.owner_plus_one = current_task->id + 1U;
+  set_owner(state, current_task->id + 1U);
   state.locked_count = 1;
   world_.checks().acquire(current_task->id, SyncKey::object(state.object));
   state_changed(state);
@@ -200,7 +203,7 @@ int Mutexes::destroy(pthread_mutex_t* mutex) noexcept {
 }
 
 void Mutexes::release(State& state, const void* address) noexcept {
-  state.owner_plus_one = 0;
+  set_owner(state, 0);
   state.locked_count = 0;
   world_.checks().release(current_task->id, SyncKey::object(state.object));
   Scheduler& scheduler = world_.scheduler();
@@ -235,7 +238,7 @@ void Mutexes::release_robust_of(TaskId owner) noexcept {
     State& state = *held.state;
     // Somebody may have made something else of the memory meanwhile.
     if (state.execution != world_.execution_number() || state.owner_plus_one != owner + 1U) continue;
-    state.owner_plus_one = 0;
+    set_owner(state, 0);
     state.locked_count = 0;
     state.health = State::Health::owner_died;
     // What the dead owner did comes before what the next one does, who is told of its death.
@@ -243,6 +246,30 @@ void Mutexes::release_robust_of(TaskId owner) noexcept {
     state_changed(state);
     world_.scheduler().wake(mutex_key(held.address, state.kind), 1);
   }
+}
+
+void Mutexes::set_owner(State& state, std::uint32_t owner_plus_one) noexcept {
+  state.owner_plus_one = owner_plus_one;
+  locks_[state.number].owner_plus_one = owner_plus_one;
+}
+
+const Task* Mutexes::owner_of(ObjectId mutex) const noexcept {
+  for (const Lock& lock : locks_) {
+    if (lock.object == mutex && lock.owner_plus_one != 0)
+      return &world_.scheduler().task(static_cast<TaskId>(lock.owner_plus_one - 1));
+  }
+  return nullptr;
+}
+
+std::string Mutexes::held_at_end() const {
+  std::string text;
+  for (const Lock& lock : locks_) {
+    const Task* const owner = owner_of(lock.object);
+    if (owner == nullptr || owner->state == Task::State::killed) continue;  // who is killed cannot unlock
+    text += fmt::format("{}{} is still held by {}, which has ended", text.empty() ? "" : "; ",
+                        world_.objects().object_name(lock.object), owner->name);
+  }
+  return text;
 }
 
 int Mutexes::wait(pthread_cond_t* condition, pthread_mutex_t* mutex) noexcept {

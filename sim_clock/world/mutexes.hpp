@@ -3,7 +3,8 @@
 // The state of a mutex lies in the pthread_mutex_t itself, so that one in a shared segment works across
 // processes and a statically initialised one (all zeros) needs no call. The kind (normal, recursive,
 // error-checking) stays where pthread_mutex_init put it. Conditions hold no state: their waiters are known by
-// the address.
+// the address. Who holds a mutex is kept here as well: for messages, and at the end, when its memory may be
+// gone.
 //
 // PTHREAD_PRIO_INHERIT has its effect on Cpu::one_fifo. A robust mutex whose owner ends or is killed goes to the
 // next who locks it, with EOWNERDEAD.
@@ -24,8 +25,6 @@
 #include "sim_clock/world/task.hpp"
 
 namespace ltsim {
-
-class World;
 
 class Mutexes {
  public:
@@ -57,6 +56,13 @@ class Mutexes {
   /// Whether a task of some execution has used this mutex: outside any task it is nobody's then.
   [[nodiscard]] static bool belongs_to_an_execution(const pthread_mutex_t* mutex) noexcept;
 
+  /// Who holds the mutex of that name; null: nobody.
+  [[nodiscard]] const Task* owner_of(ObjectId mutex) const noexcept;
+  /// The mutexes that are held, and by whom, in words; empty if there are none.
+  [[nodiscard]] std::string held_at_end() const;
+  /// Whether who waits for the key waits for a mutex.
+  [[nodiscard]] static bool is_mutex_key(WaitKey key) noexcept { return (key & mutex_key_mark) != 0; }
+
   /// FUTEX_WAIT: blocks while the word still has the value `expected`.
   /// @return 0; or -1 with errno EAGAIN or ETIMEDOUT
   int futex_wait(const std::uint32_t* word, std::uint32_t expected, Deadline deadline, bool shared) noexcept;
@@ -64,7 +70,12 @@ class Mutexes {
   int futex_wake(const std::uint32_t* word, std::size_t count_max, bool shared) noexcept;
 
  private:
+  static constexpr WaitKey mutex_key_mark = std::uint64_t{1} << 61U;
   struct State;
+  struct Lock {
+    ObjectId object;
+    std::uint32_t owner_plus_one;
+  };
 
   State& resolve(pthread_mutex_t* mutex) noexcept;
   int acquire(State& state, const void* address, OperationKind kind, Deadline deadline) noexcept;
@@ -82,6 +93,8 @@ class Mutexes {
   /// Tells that the state was changed by us, in case that it lies in a segment.
   void state_changed(const State& state) noexcept;
   void release_robust_of(TaskId owner) noexcept;
+  void set_owner(State& state, std::uint32_t owner_plus_one) noexcept;
+  [[nodiscard]] static WaitKey mutex_key(const void* address, std::int32_t kind) noexcept;
 
   struct RobustHeld {
     State* state;
@@ -91,7 +104,7 @@ class Mutexes {
 
   World& world_;
   std::vector<RobustHeld> robust_held_;  // in the order in which they were locked
-  std::uint32_t mutexes_count_ = 0;
+  std::vector<Lock> locks_;              // by State::number
 };
 
 }  // namespace ltsim

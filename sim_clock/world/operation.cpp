@@ -107,6 +107,25 @@ bool can_be_polling(OperationKind kind) noexcept {
   }
 }
 
+bool changes_what_others_see(OperationKind kind) noexcept {
+  switch (kind) {
+    case OperationKind::write:
+    case OperationKind::atomic_store:
+    case OperationKind::sem_unlink:
+    case OperationKind::sem_init:
+    case OperationKind::sem_post:
+    case OperationKind::cond_signal:
+    case OperationKind::cond_broadcast:
+    case OperationKind::futex_wake:
+    case OperationKind::thread_create:
+    case OperationKind::shm_unlink:
+    case OperationKind::shm_resize:
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool depend(const Operation& one, const Operation& other) noexcept {
   if (is_memory_access(one.kind) != is_memory_access(other.kind)) return false;
   if (one.object != other.object) return false;

@@ -64,6 +64,9 @@ enum class OperationKind : std::uint8_t {
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
 [[nodiscard]] bool can_be_polling(OperationKind kind) noexcept;
 
+/// Whether it changes something for other tasks, whatever the state of the world.
+[[nodiscard]] bool changes_what_others_see(OperationKind kind) noexcept;
+
 /// Number of a named thing of the world: a semaphore, a segment, a mutex; 0 is "no object".
 using ObjectId = std::uint32_t;
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -42,6 +45,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   has_run_ = false;
   cpu_ = Cpu::many;
   ready_ever_ = 0;
+  fetches_are_watched_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -84,6 +88,8 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.looks_count = 0;
   task.steps_since_look = 0;
   task.update_failed = false;
+  task.polls.reset();
+  task.repeats.reset();
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
@@ -149,12 +155,9 @@ void Scheduler::point(Operation operation) noexcept {
   Task& self = *running_;
   pending_[self.id] = operation;
   clock_.pass(point_cost);
-  if (++points_ > points_max_) [[unlikely]] {
-    const GhostScope ghost;
-    fail(OutcomeKind::livelock,
-         fmt::format("{} scheduling points and no end; {} is at {} {}", points_max_, self.name,
-                     to_string(operation.kind), world_.objects().name(operation)));
-  }
+  ++points_;
+  if (in_fair_tail()) [[unlikely]]
+    pass_fair_tail(self, operation);
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, operation);
   if (clock_.next_deadline() <= clock_.now()) wake_due();
@@ -179,6 +182,8 @@ void Scheduler::point(Operation operation) noexcept {
   if (strategy_follows_steps_) strategy_->performs(self.id, operation);
   if (listener_ != nullptr) [[unlikely]]
     listener_->performs(self, operation);
+  if (fetches_are_watched_) [[unlikely]]
+    world_.fetches().performs(self, operation);
 }
 
 bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {
@@ -341,7 +346,7 @@ void Scheduler::nobody_can_run() noexcept {
   }
   if (!clock_.any_armed()) {
     const GhostScope ghost;
-    fail(OutcomeKind::deadlock, describe_waiting());
+    fail(OutcomeKind::deadlock, describe_deadlock(world_));
   }
   clock_.pass(std::max(clock_.next_deadline() - clock_.now(), SimTime{0}));
   wake_due();
@@ -449,16 +454,25 @@ void Scheduler::make_unrunnable(const Task& task) noexcept {
   --runnable_count_;
 }
 
-std::string Scheduler::describe_waiting() const {
-  std::string text;
-  for (std::size_t i = 0; i < tasks_count_; ++i) {
-    const Task& task = *tasks_[i];
-    if (task.state != Task::State::blocked) continue;
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} waits in {} {}", task.name, to_string(pending(task).kind),
-                        world_.objects().name(pending(task)));
+void Scheduler::pass_fair_tail(Task& task, const Operation& operation) noexcept {
+  if (points_ > points_max_) {
+    const GhostScope ghost;
+    fail(OutcomeKind::livelock,
+         fmt::format("{} scheduling points and no end; {}", points_max_, describe_livelock(world_)));
   }
-  return text;
+  // Of all that a task does again and again the same one is kept, wherever in its loop the tail begins and ends.
+  // Addresses outside of segments are no part of that: they differ from run to run.
+  const auto keep_least = [&](std::optional<Operation>& kept) {
+    const auto key = [](const Operation& of) {
+      return std::tuple{of.object == 0, of.object, of.object == 0 ? 0 : of.offset, of.kind, of.bytes};
+    };
+    if (!kept || key(operation) < key(*kept)) kept = operation;
+  };
+  if (can_be_polling(operation.kind) || operation.kind == OperationKind::atomic_update) {
+    keep_least(task.polls);
+  } else if (changes_what_others_see(operation.kind)) {
+    keep_least(task.repeats);
+  }
 }
 
 }  // namespace ltsim

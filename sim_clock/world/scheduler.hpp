@@ -92,6 +92,9 @@ class Scheduler {
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
 
+  /// From now on, in this execution, World::single_fetch() is told each step.
+  void watch_fetches() noexcept { fetches_are_watched_ = true; }
+
   // --- priorities; they matter on Cpu::one_fifo only (one_fifo.cpp) ---
 
   /// @param priority      1 to 99; 0: none
@@ -166,7 +169,8 @@ class Scheduler {
   void wake_due() noexcept;
   void make_runnable(Task& task) noexcept;
   void make_unrunnable(const Task& task) noexcept;
-  [[nodiscard]] std::string describe_waiting() const;
+  /// Notes what the task does in the fair tail, and ends the execution where that has lasted long enough.
+  void pass_fair_tail(Task& task, const Operation& operation) noexcept;
 
   void mix(std::uint64_t word) noexcept { hash_ = std::rotl((hash_ ^ word) * 0x9e3779b97f4a7c15U, 27); }
 
@@ -197,6 +201,7 @@ class Scheduler {
   bool strategy_follows_steps_ = false;
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;
+  bool fetches_are_watched_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

@@ -116,10 +116,6 @@ int Semaphores::timed_wait(sem_t* handle, clockid_t clock, const timespec& deadl
 
 int Semaphores::post(sem_t* handle) noexcept {
   Semaphore& semaphore = arrive_at(handle, OperationKind::sem_post);
-  if (semaphore.value == value_max) {
-    errno = EOVERFLOW;
-    return -1;
-  }
   if (world_.faults().strikes(FaultKind::lost_post)) [[unlikely]]
     return 0;
   add_one(semaphore);
@@ -129,6 +125,8 @@ int Semaphores::post(sem_t* handle) noexcept {
 }
 
 void Semaphores::add_one(Semaphore& semaphore) noexcept {
+  if (semaphore.value >= semaphore.value_meant_max) [[unlikely]]
+    exceeds_bound(semaphore, std::uint64_t{semaphore.value} + 1);
   ++semaphore.value;
   world_.checks().release(current_task->id, SyncKey::object(semaphore.object));
   world_.scheduler().wake(key_of(semaphore), 1);
@@ -181,11 +179,29 @@ sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, un
   semaphore.value = value;
   semaphore.linked = !name.empty();
   semaphore.shared = true;
+  semaphore.value_meant_max = value_max;
+  for (const Bound& bound : bounds_) {
+    if (bound.name == name) semaphore.value_meant_max = bound.count_max;
+  }
+  if (value > semaphore.value_meant_max) exceeds_bound(semaphore, value);
   sem_t& handle = handles_[count_];
   const Handle content{.execution = world_.execution_number(), .index = static_cast<std::uint32_t>(count_)};
   std::memcpy(&handle, &content, sizeof content);
   ++count_;
   return handle;
+}
+
+void Semaphores::bound(std::string_view name, unsigned count_max) {
+  bounds_.push_back({.name = std::string{name}, .count_max = count_max});
+}
+
+void Semaphores::exceeds_bound(const Semaphore& semaphore, std::uint64_t value) {
+  const GhostScope ghost;
+  const std::string_view name = world_.objects().object_name(semaphore.object);
+  world_.violated(value > value_max
+                      ? fmt::format("semaphore {} is posted at its maximum, {} (EOVERFLOW)", name, value_max)
+                      : fmt::format("semaphore {} has count {}, at most {} is meant (I10)", name, value,
+                                    semaphore.value_meant_max));
 }
 
 Semaphores::Semaphore* Semaphores::find(std::string_view name) noexcept {

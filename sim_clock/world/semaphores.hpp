@@ -1,16 +1,19 @@
 // POSIX semaphores of the simulated world, named and not.
 //
 // As on Linux a post makes the count visible to everybody and wakes the longest waiting task; another task
-// that runs first may take the token away from it.
+// that runs first may take the token away from it. A post beyond the maximum (EOVERFLOW), or beyond the bound that
+// a scenario gives, is lost or was never meant: it ends the execution.
 #pragma once
 
 #include <semaphore.h>
 
 #include <array>
 #include <climits>
+#include <cstdint>
 #include <ctime>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/handle.hpp"
@@ -32,7 +35,13 @@ class Semaphores {
   }
 
   explicit Semaphores(World& world) noexcept : world_(world) {}
-  void reset() noexcept { count_ = 0; }
+  void reset() noexcept {
+    count_ = 0;
+    bounds_.clear();
+  }
+
+  /// See World::bound_semaphore().
+  void bound(std::string_view name, unsigned count_max);
 
   /// At set-up: a named semaphore that is there already.
   void leave(std::string_view path, unsigned value);
@@ -54,11 +63,19 @@ class Semaphores {
     std::string name;  // empty: not named
     ObjectId object = 0;
     unsigned value = 0;
+    unsigned value_meant_max = value_max;  // a bound of the scenario, or the system's
     bool linked = false;
     bool shared =
         true;  // between processes; a post of another process does not wake who waits for one that is not
   };
 
+  struct Bound {
+    std::string name;
+    unsigned count_max;
+  };
+
+  /// Ends the execution: the semaphore would have the count `value`.
+  void exceeds_bound(const Semaphore& semaphore, std::uint64_t value);
   /// @return its handle
   sem_t& create(std::string_view name, std::string_view shown_name, unsigned value);
   [[nodiscard]] Semaphore* find(std::string_view name) noexcept;
@@ -76,6 +93,7 @@ class Semaphores {
   static inline std::array<sem_t, semaphores_max> handles_{};  // what open() returns, by index
   std::array<Semaphore, semaphores_max> semaphores_;           // the first count_ belong to this execution
   std::size_t count_ = 0;
+  std::vector<Bound> bounds_;
 };
 
 }  // namespace ltsim

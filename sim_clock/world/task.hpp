@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct Task {
   std::uint32_t looks_count = 0;    ///< how often in a row it has looked at that, other looks between
   std::uint32_t steps_since_look = 0;
   bool update_failed = false;         ///< its last compare-and-exchange found another value
+  std::optional<Operation> polls;     ///< in the fair tail: what it looks at
+  std::optional<Operation> repeats;   ///< in the fair tail: what it changes
   SimTime deadline = SimTime::max();  ///< while blocked
   bool deadline_on_wall_clock = false;
   int priority = 0;               ///< of SCHED_FIFO and SCHED_RR, 1 to 99; 0: none

@@ -96,9 +96,13 @@ void World::run() {
 
 void World::end_execution() noexcept {
   in_execution = nullptr;
-  const auto race = checks_.race();
-  if (!race || failed()) return;
-  scheduler_.fail(OutcomeKind::data_race, describe(*race, segments_.segment_at(race->place), *this));
+  if (failed()) return;
+  if (const auto race = checks_.race()) {
+    scheduler_.fail(OutcomeKind::data_race, describe(*race, segments_.segment_at(race->place), *this));
+    return;
+  }
+  std::string held = mutexes_.held_at_end();
+  if (!held.empty()) scheduler_.fail(OutcomeKind::leak, std::move(held));
 }
 
 bool World::refuses_real(std::string_view call) {
@@ -158,6 +162,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   mutexes_.reset();
   faults_.reset();
   damages_.reset();
+  fetches_.reset();
   processes_count_ = 0;
 }
 

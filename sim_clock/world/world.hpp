@@ -26,6 +26,7 @@
 
 #include "sim_clock/check/memory_checks.hpp"
 #include "sim_clock/check/outcome.hpp"
+#include "sim_clock/check/single_fetch.hpp"
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
@@ -146,6 +147,25 @@ class World {
     objects_.name_region(segment, offset, bytes, region);
   }
 
+  /// More tokens than that in a semaphore, once it has been opened or posted, end the execution.
+  /// @param semaphore  its name, without '/'; it is opened later
+  /// @param count_max  0 to SEM_VALUE_MAX
+  void bound_semaphore(std::string_view semaphore, unsigned count_max) {
+    semaphores_.bound(semaphore, count_max);
+  }
+
+  /// A task that loads these bytes of a segment twice without a wait, a hand-over or a write of its own to them
+  /// between ends the execution: what it checked need not be what it uses. What that means exactly is said in
+  /// check/single_fetch.hpp.
+  /// @param segment  name of the segment without '/'; it may be created later
+  /// @param bytes    1 to 8
+  /// @param name     for the message, e.g. "segment.request-length"
+  void single_fetch(std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
+                    std::string_view name) {
+    fetches_.declare(segment, offset, bytes, name);
+    scheduler_.watch_fetches();
+  }
+
   /// Calls `check` each time that every task waits of its own accord and none is merely held up, before time
   /// moves on. It may call violated().
   void whenever_idle(std::function<void()> check) { scheduler_.add_idle_check(std::move(check)); }
@@ -185,7 +205,7 @@ class World {
   /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
   /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
-  /// A race is the outcome from here on if there is nothing worse.
+  /// An execution that has passed up to here still fails if there was a race, or else if a mutex is held.
   void end_execution() noexcept;
 
   /// Races, memory that changed unseen and coverage: on or off in the executions that begin from now on. Off
@@ -209,6 +229,8 @@ class World {
   [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
+  [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
+  [[nodiscard]] SingleFetch& fetches() noexcept { return fetches_; }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
@@ -255,6 +277,9 @@ class World {
   void choose_clock_step() noexcept;
 
   [[nodiscard]] static WaitKey join_key(TaskId task) noexcept { return std::uint64_t{1} << 60U | task; }
+  [[nodiscard]] static bool is_join_key(WaitKey key) noexcept { return key >> 60U == 1; }
+  /// @param key  one for which is_join_key() holds
+  [[nodiscard]] static TaskId task_of_join_key(WaitKey key) noexcept { return static_cast<TaskId>(key); }
 
  private:
   static constexpr unsigned execution_number_bits = 40;
@@ -269,6 +294,7 @@ class World {
   Threads threads_{*this};
   Faults faults_{*this};
   Damages damages_{*this};
+  SingleFetch fetches_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;

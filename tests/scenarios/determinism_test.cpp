@@ -58,7 +58,7 @@ TEST_P(DeterminismTest, two_hundred_seeds_give_the_same_traces_in_two_processes)
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, DeterminismTest,
                          testing::Values("paper/time-out", "paper/late-emulator", "paper/three-requests",
-                                         "nc/part-program"),
+                                         "paper/register-time-out", "nc/part-program"),
                          &scenarios::test_name);
 
 TEST(Replay, reproduces_one_hundred_recorded_failures_out_of_one_hundred) {

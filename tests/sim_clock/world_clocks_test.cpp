@@ -55,6 +55,7 @@ TEST_F(CallsTest, deadlines_of_a_mutex_are_read_on_their_clock) {
                 world.require(!mutex.try_lock_until(std::chrono::steady_clock::now() + 20ms), "still held");
                 world.require(took(world, begin, 20ms), "steady clock");
               }}.join();
+              mutex.unlock();
             }),
             Outcome{});
 }

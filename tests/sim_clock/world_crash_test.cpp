@@ -332,6 +332,26 @@ TEST_F(CrashTest, an_ordinary_mutex_stays_locked_for_ever) {
             Outcome{});
 }
 
+TEST_F(CrashTest, who_waits_for_ever_for_the_lock_of_the_dead_is_told_so) {
+  const Outcome outcome = run_crashing({"victim/main before yield - #1 of victim"}, [](World& world) {
+    world.process("victim").may_crash({});
+    world.process("victim").start("main", [] {
+      auto& shared = map_shared();
+      init_mutex(shared.mutex, PTHREAD_MUTEX_STALLED);
+      pthread_mutex_lock(&shared.mutex);
+      std::this_thread::yield();
+    });
+    world.process("peer").start("main", [] {
+      usleep(1000);
+      pthread_mutex_lock(&map_shared().mutex);
+    });
+    world.run();
+  });
+  EXPECT_EQ(outcome,
+            (Outcome{OutcomeKind::deadlock,
+                     "peer/main waits in mutex_lock mutex-1, held by victim/main, which was killed"}));
+}
+
 TEST_F(CrashTest, the_next_owner_of_a_robust_mutex_is_told_that_the_last_one_died) {
   EXPECT_EQ(run_crashing({"victim/main before yield - #1 of victim"},
                          [](World& world) {

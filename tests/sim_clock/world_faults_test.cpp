@@ -297,6 +297,7 @@ std::array<SimTime, 4> wait_by_the_wall_clock(World& world) {
   std::thread{[&] {
     measure(3, [&](const timespec& deadline) { pthread_mutex_timedlock(&mutex, &deadline); });
   }}.join();
+  pthread_mutex_unlock(&mutex);
   return took;
 }
 

@@ -45,6 +45,7 @@ TEST_F(CallsTest, a_plain_mutex_cannot_be_tried_twice_by_its_owner) {
               pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
               world.require(pthread_mutex_trylock(&mutex) == 0, "free");
               world.require(pthread_mutex_trylock(&mutex) == EBUSY, "held");
+              pthread_mutex_unlock(&mutex);
             }),
             Outcome{});
 }
