@@ -69,8 +69,22 @@ std::size_t SurwStrategy::choose_task(const TaskChoice& choice) noexcept {
     const bool waits = next_ != nobody && task != next_ && is_interesting(choice.pending[task]);
     if (!waits && !(choice.running_gives_way && task == choice.running)) candidates[count++] = i;
   }
-  if (count == 0) return generator().below(static_cast<std::uint32_t>(choice.options.size()));
+  if (count == 0) return draw_waiting(choice);
   return candidates[count == 1 ? 0 : generator().below(count)];
+}
+
+std::size_t SurwStrategy::draw_waiting(const TaskChoice& choice) noexcept {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t task : choice.options) sum += task < tasks_seen_ ? left_[task] : 0;
+  if (sum == 0) return generator().below(static_cast<std::uint32_t>(choice.options.size()));
+  std::uint64_t place = generator().below(static_cast<std::uint32_t>(sum));
+  std::size_t i = 0;
+  for (; i + 1 < choice.options.size(); ++i) {
+    const std::uint64_t left = choice.options[i] < tasks_seen_ ? left_[choice.options[i]] : 0;
+    if (place < left) break;
+    place -= left;
+  }
+  return i;
 }
 
 bool SurwStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {

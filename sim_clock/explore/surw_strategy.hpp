@@ -35,6 +35,9 @@ class SurwStrategy final : public SamplingStrategy {
   [[nodiscard]] bool clock_goes_first(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t draw_interesting() noexcept;
   [[nodiscard]] TaskId draw_next() noexcept;
+  /// All who can run wait for one who cannot, or for the clock without a timer: one of them, in proportion to what
+  /// they have left.
+  [[nodiscard]] std::size_t draw_waiting(const TaskChoice& choice) noexcept;
   [[nodiscard]] bool is_interesting(const Operation& operation) noexcept;
 
   std::size_t tasks_seen_ = 0;     // all have smaller numbers
