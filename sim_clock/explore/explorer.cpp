@@ -25,17 +25,6 @@ Failure* find_failure(std::vector<Failure>& failures, const Outcome& outcome) {
   return nullptr;
 }
 
-/// Adds it to those known, or to the one among them that it is.
-void add_failure(std::vector<Failure>& failures, Failure&& failure) {
-  for (Failure& known : failures) {
-    if (!is_same_failure(known, failure)) continue;
-    ++known.count;
-    known.messages.insert(known.messages.end(), failure.messages.begin(), failure.messages.end());
-    return;
-  }
-  failures.push_back(std::move(failure));
-}
-
 /// The first line in which two texts differ, of both.
 std::string first_difference(std::string_view one, std::string_view other) {
   while (!one.empty() || !other.empty()) {
@@ -69,6 +58,46 @@ std::uint64_t Explorer::execute(const Scenario& scenario, Strategy& strategy, st
   return world_.scheduler().trace_hash();
 }
 
+ExecutionResult Explorer::explore_one(const Scenario& scenario, Strategy& strategy,
+                                      const ExploreOptions& options, std::uint64_t execution,
+                                      std::vector<Failure>& failures, std::optional<Failure>& fresh) {
+  const std::uint64_t seed = seed_of(options.seed, execution);
+  const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
+  ExecutionResult result{
+      .trace_hash = hash, .decisions = world_.scheduler().decisions(), .points = world_.scheduler().points()};
+  ExecutionSummary summary{.points = result.points, .new_states = world_.coverage().new_in_execution()};
+  if (world_.scheduler().outcome().passed()) {
+    if (std::has_single_bit(execution) && !repeats(scenario, strategy, seed, hash)) {
+      throw not_repeatable(scenario, strategy, seed);
+    }
+  } else if (Failure* const known = find_failure(failures, world_.scheduler().outcome())) {
+    ++known->count;
+    result.failure = static_cast<std::size_t>(known - failures.data()) + 1;
+  } else {
+    fresh = record(scenario, strategy, seed);
+    const bool settled = fresh->trace_hash == hash || repeats(scenario, strategy, seed, fresh->trace_hash);
+    if (!settled || fresh->outcome.passed()) throw not_repeatable(scenario, strategy, seed);
+    fresh->execution = execution;
+    fresh->count = 1;
+    summary.failed_anew = true;
+  }
+  strategy.learn(summary);
+  return result;
+}
+
+std::size_t Explorer::add_failure(const Scenario& scenario, const ExploreOptions& options,
+                                  std::vector<Failure>& failures, Failure failure) {
+  if (options.minimize_seconds.count() > 0) minimize(scenario, failure, options.minimize_seconds);
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    if (!is_same_failure(failures[i], failure)) continue;
+    ++failures[i].count;
+    failures[i].messages.insert(failures[i].messages.end(), failure.messages.begin(), failure.messages.end());
+    return i + 1;
+  }
+  failures.push_back(std::move(failure));
+  return failures.size();
+}
+
 ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, const ExploreOptions& options) {
   const SignalGuard signals;
   const auto begin = std::chrono::steady_clock::now();
@@ -84,37 +113,15 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
         elapsed() >= *options.seconds_max) {
       break;
     }
-    const std::uint64_t execution = ++report.executions;
-    const std::uint64_t seed = seed_of(options.seed, execution);
-    const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
-    report.decisions += world_.scheduler().decisions();
-    report.points += world_.scheduler().points();
-    traces.insert(hash);
-    ExecutionSummary summary{.points = world_.scheduler().points(),
-                             .new_states = world_.coverage().new_in_execution()};
-    if (world_.scheduler().outcome().passed()) {
-      if (std::has_single_bit(execution) && !repeats(scenario, strategy, seed, hash)) {
-        throw not_repeatable(scenario, strategy, seed);
-      }
-      strategy.learn(summary);
-      continue;
-    }
-    const Outcome outcome = world_.scheduler().outcome();
-    if (Failure* const known = find_failure(report.failures, outcome)) {
-      ++known->count;
-      strategy.learn(summary);
-      continue;
-    }
-    Failure failure = record(scenario, strategy, seed);
-    const bool settled = failure.trace_hash == hash || repeats(scenario, strategy, seed, failure.trace_hash);
-    if (!settled || failure.outcome.passed()) throw not_repeatable(scenario, strategy, seed);
-    failure.execution = execution;
-    failure.count = 1;
-    if (options.minimize_seconds.count() > 0) minimize(scenario, failure, options.minimize_seconds);
-    add_failure(report.failures, std::move(failure));
-    if (!options.keep_going) break;
-    summary.failed_anew = true;
-    strategy.learn(summary);
+    ++report.executions;
+    std::optional<Failure> fresh;
+    const ExecutionResult result =
+        explore_one(scenario, strategy, options, report.executions, report.failures, fresh);
+    report.decisions += result.decisions;
+    report.points += result.points;
+    traces.insert(result.trace_hash);
+    if (fresh) static_cast<void>(add_failure(scenario, options, report.failures, std::move(*fresh)));
+    if ((fresh || result.failure != 0) && !options.keep_going) break;
   }
   report.seconds = elapsed().count();
   report.distinct_schedules = traces.size();

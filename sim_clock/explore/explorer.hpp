@@ -44,6 +44,14 @@ struct Failure {
   bool one_minimal = false;           ///< without any one line of the schedule the failure is gone
   std::string story;                  ///< of `schedule`, for a screen; empty where it was not made small
   std::vector<std::string> messages;  ///< of all executions that count as this failure
+  bool has_schedule = true;           ///< false: the process died, and the choices with it
+};
+
+struct ExecutionResult {
+  std::uint64_t trace_hash = 0;
+  std::uint64_t decisions = 0;
+  std::uint64_t points = 0;
+  std::size_t failure = 0;  ///< its place, from 1, among the failures known; 0: passed, or not known yet
 };
 
 struct ExploreReport {
@@ -80,6 +88,17 @@ class Explorer {
 
   [[nodiscard]] ExploreReport explore(const Scenario& scenario, Strategy& strategy,
                                       const ExploreOptions& options);
+
+  /// Execution number `execution` of an exploration: runs it, and checks some for being repeatable. The caller
+  /// holds a SignalGuard.
+  /// @param fresh  gets the failure if it is not among `failures` yet: the result names it after add_failure()
+  [[nodiscard]] ExecutionResult explore_one(const Scenario& scenario, Strategy& strategy,
+                                            const ExploreOptions& options, std::uint64_t execution,
+                                            std::vector<Failure>& failures, std::optional<Failure>& fresh);
+  /// Makes the failure small and adds it to those known, or to the one among them that it is.
+  /// @return its place among them, from 1
+  [[nodiscard]] std::size_t add_failure(const Scenario& scenario, const ExploreOptions& options,
+                                        std::vector<Failure>& failures, Failure failure);
 
   /// Runs one execution and writes its choices down.
   [[nodiscard]] Failure record(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);

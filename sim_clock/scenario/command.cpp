@@ -1,5 +1,6 @@
 #include "sim_clock/scenario/command.hpp"
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -25,17 +26,24 @@ Schedule read_schedule(const std::string& path) {
   return std::move(*schedule);
 }
 
-bool write_file(const std::filesystem::path& path, const std::string& text) {
+FileResult write_file(const std::filesystem::path& path, const std::string& text) {
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
+  if (error) return tl::unexpected(error.message());
+  errno = 0;
   std::ofstream file{path, std::ios::binary};
+  const bool is_open = file.is_open();
   file << text;
   file.close();
-  return static_cast<bool>(file);
+  if (file) return {};
+  const int reason = errno == 0 ? EIO : errno;
+  if (is_open && std::filesystem::is_regular_file(path, error)) std::filesystem::remove(path, error);
+  return tl::unexpected(std::generic_category().message(reason));
 }
 
 void write_asked_for_file(const std::filesystem::path& path, const std::string& text) {
-  if (!write_file(path, text)) throw UsageError{fmt::format("{}: cannot be written", path.string())};
+  const FileResult written = write_file(path, text);
+  if (!written) throw UsageError{fmt::format("{}: cannot be written: {}", path.string(), written.error())};
 }
 
 std::string as_shell_word(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <tl/expected.hpp>
 
 #include "sim_clock/explore/schedule.hpp"
 #include "sim_clock/scenario/scenario.hpp"
@@ -18,6 +19,8 @@ inline constexpr int exit_nothing_found = 0;
 inline constexpr int exit_failure_found = 1;
 inline constexpr int exit_bad_usage = 2;
 inline constexpr int exit_our_fault = 3;
+/// Interrupted, with nothing found until then: what a shell makes of a program that dies of the signal.
+[[nodiscard]] constexpr int exit_of_signal(int signal) noexcept { return 128 + signal; }
 
 /// Bad usage or an unreadable file: told to the user, exit code 2.
 struct UsageError {
@@ -42,9 +45,11 @@ void add_replay_command(CLI::App& app, Command& chosen);
 /// @throw UsageError if the file cannot be read or is no schedule
 [[nodiscard]] Schedule read_schedule(const std::string& path);
 
-/// Makes the folders that are missing.
-/// @return whether the file could be written
-[[nodiscard]] bool write_file(const std::filesystem::path& path, const std::string& text);
+/// Nothing, or why the file cannot be written.
+using FileResult = tl::expected<void, std::string>;
+
+/// Makes the folders that are missing, and leaves no half of a file behind.
+[[nodiscard]] FileResult write_file(const std::filesystem::path& path, const std::string& text);
 /// @throw UsageError if the file cannot be written
 void write_asked_for_file(const std::filesystem::path& path, const std::string& text);
 

@@ -13,7 +13,8 @@ namespace ltsim {
 int run_command_line(int argc, const char* const* argv) {
   CLI::App app{
       "Runs scenarios in a world where threads, time and semaphores follow a seed.\n"
-      "Exit code: 0 nothing found, 1 a failure was found, 2 bad usage or unreadable file, 3 our own fault."};
+      "Exit code: 0 nothing found, 1 a failure was found, 2 bad usage or unreadable file, 3 our own fault;\n"
+      "130 or 143 when SIGINT or SIGTERM ended a search that had found nothing."};
   app.require_subcommand(1);
   Command chosen;
   add_list_command(app, chosen);

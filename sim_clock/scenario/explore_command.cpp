@@ -10,9 +10,11 @@
 
 #include <fmt/format.h>
 
-#include "sim_clock/explore/explorer.hpp"
-#include "sim_clock/explore/random_strategy.hpp"
+#include "sim_clock/explore/strategies.hpp"
+#include "sim_clock/explore/worker_pool.hpp"
 #include "sim_clock/scenario/command.hpp"
+#include "sim_clock/scenario/interrupt.hpp"
+#include "sim_clock/scenario/progress_line.hpp"
 #include "sim_clock/scenario/report.hpp"
 
 namespace ltsim {
@@ -25,8 +27,11 @@ struct ExploreArguments {
   ExploreOptions options;
   double seconds = 0;
   double minimize_seconds = 2;
-  std::string strategy = "random";
+  unsigned jobs = 1;
+  double hang_seconds = 10;
+  std::string strategy = strategy_names().front();
   std::string json_file;
+  std::string junit_file;
   std::string out_folder = "out";
 };
 
@@ -38,56 +43,111 @@ std::string schedule_path(const std::string& folder, std::string scenario, std::
   return (std::filesystem::path{folder} / file).string();
 }
 
-/// "1000 executions and 2 s"
+/// "at most 1000 executions and 2 s"
 std::string describe_limits(const ExploreArguments& arguments) {
   const bool counted = arguments.options.executions_max != unlimited;
   const std::string executions =
       counted ? fmt::format("{} executions", arguments.options.executions_max) : "";
-  if (!arguments.options.seconds_max) return executions;
-  return fmt::format("{}{}{} s", executions, counted ? " and " : "", arguments.seconds);
+  if (!arguments.options.seconds_max) return "at most " + executions;
+  return fmt::format("at most {}{}{} s", executions, counted ? " and " : "", arguments.seconds);
+}
+
+/// "  replay:  ltsim replay FILE", or how else the failure is seen again.
+void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view program,
+                           const Failure& failure, const std::string& path, const FileResult& written) {
+  const std::string call = as_shell_word(std::string{program});
+  if (!failure.has_schedule) {
+    // All up to there: what the strategy has learned by then belongs to it.
+    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}\n", call,
+               as_shell_word(failure.schedule.scenario), arguments.strategy, arguments.options.seed,
+               arguments.jobs, failure.execution, arguments.options.keep_going ? " --keep-going" : "");
+  } else if (written) {
+    fmt::print("  replay:  {} replay {}\n", call, as_shell_word(path));
+  } else {
+    // The failure counts, and has been told, also where its file cannot be written.
+    fmt::print("  {}: cannot be written: {}; the lines above are what it would hold\n", path,
+               written.error());
+  }
+}
+
+/// Tells each failure and writes its schedule.
+void tell_failures(const ExploreArguments& arguments, std::string_view program, ScenarioReport& report) {
+  for (const Failure& failure : report.explored.failures) {
+    const std::string path =
+        schedule_path(arguments.out_folder, std::string{report.scenario}, report.schedule_paths.size());
+    fmt::print("{}", describe(failure, report.strategy));
+    const FileResult written =
+        failure.has_schedule ? write_file(path, to_string(failure.schedule)) : FileResult{};
+    tell_how_to_see_again(arguments, program, failure, path, written);
+    report.schedule_paths.push_back(failure.has_schedule && written ? path : "");
+  }
+}
+
+ScenarioReport explore_one_scenario(const Scenario& scenario, const ExploreArguments& arguments,
+                                    std::string_view program) {
+  fmt::print("{}  seed {}, strategy {}, {}{}\n", scenario.name, arguments.options.seed, arguments.strategy,
+             describe_limits(arguments), arguments.jobs == 1 ? "" : fmt::format(", {} jobs", arguments.jobs));
+  std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
+  WorkerPoolReport pool_report;
+  {
+    ProgressLine line{scenario.name};
+    pool_report =
+        explore_in_workers(scenario, [&] { return make_strategy(arguments.strategy); }, arguments.options,
+                           {.jobs = arguments.jobs,
+                            .hang_after = std::chrono::duration<double>{arguments.hang_seconds},
+                            .on_progress = [&](const ExploreProgress& progress) {
+                              line.show(progress);
+                              return InterruptGuard::signal() == 0;
+                            }});
+  }
+  ScenarioReport report{.scenario = scenario.name,
+                        .strategy = arguments.strategy,
+                        .seed = arguments.options.seed,
+                        .explored = std::move(pool_report.explored),
+                        .schedule_paths = {},
+                        .error = std::move(pool_report.error)};
+  tell_failures(arguments, program, report);
+  if (report.explored.failures.empty() && !report.error) {
+    fmt::print("{}  nothing found{}: {} executions, {} different traces, {} scheduling points, {:.1f} s\n",
+               scenario.name, pool_report.stopped ? " before the interruption" : "",
+               report.explored.executions, report.explored.distinct_schedules, report.explored.points,
+               report.explored.seconds);
+  }
+  for (const std::uint64_t execution : pool_report.abandoned) {
+    fmt::print("  execution {}, seed {:#x}, did not end and was killed\n", execution,
+               Explorer::seed_of(arguments.options.seed, execution));
+  }
+  if (report.error) fmt::print(stderr, "ltsim: {}\n", *report.error);
+  return report;
+}
+
+/// @return whether it was asked for and could not be written
+bool fails_to_write(const std::string& path, const std::string& text) {
+  if (path.empty()) return false;
+  const FileResult written = write_file(path, text);
+  if (!written) fmt::print(stderr, "ltsim: {}: cannot be written: {}\n", path, written.error());
+  return !written;
 }
 
 int explore(const ExploreArguments& arguments, std::string_view program) {
-  if (!arguments.json_file.empty() && arguments.scenarios.size() != 1) {
-    throw UsageError{"--json writes the report of one scenario; name one"};
-  }
   std::vector<const Scenario*> chosen;
   for (const std::string& name : arguments.scenarios) chosen.push_back(&scenario_of_name(name));
-  World world;
-  Explorer explorer{world};
-  RandomStrategy strategy;
-  bool found = false;
+  const InterruptGuard interrupt;
+  std::vector<ScenarioReport> reports;
   for (const Scenario* const scenario : chosen) {
-    fmt::print("{}  seed {}, strategy {}, at most {}\n", scenario->name, arguments.options.seed,
-               strategy.name(), describe_limits(arguments));
-    std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
-    const ExploreReport report = explorer.explore(*scenario, strategy, arguments.options);
-    std::vector<std::string> paths;
-    for (const Failure& failure : report.failures) {
-      paths.push_back(schedule_path(arguments.out_folder, std::string{scenario->name}, paths.size()));
-      fmt::print("{}", describe(failure, strategy.name()));
-      // The failure counts, and has been told, also where its file cannot be written.
-      if (write_file(paths.back(), to_string(failure.schedule))) {
-        fmt::print("  replay:  {} replay {}\n", as_shell_word(std::string{program}),
-                   as_shell_word(paths.back()));
-      } else {
-        fmt::print("  {}: cannot be written; the lines above are what it would hold\n", paths.back());
-      }
-    }
-    found = found || !report.failures.empty();
-    if (report.failures.empty()) {
-      fmt::print("{}  nothing found: {} executions, {} different traces, {} scheduling points, {:.1f} s\n",
-                 scenario->name, report.executions, report.distinct_schedules, report.points, report.seconds);
-    }
-    if (!arguments.json_file.empty()) {
-      write_asked_for_file(arguments.json_file, to_json({.scenario = scenario->name,
-                                                         .strategy = strategy.name(),
-                                                         .seed = arguments.options.seed,
-                                                         .report = report,
-                                                         .schedule_paths = paths}));
-    }
+    reports.push_back(explore_one_scenario(*scenario, arguments, program));
+    if (reports.back().error || InterruptGuard::signal() != 0) break;
   }
-  return found ? exit_failure_found : exit_nothing_found;
+  const bool has_error = reports.back().error.has_value();
+  const bool found = std::any_of(reports.begin(), reports.end(), [](const ScenarioReport& report) {
+    return !report.explored.failures.empty();
+  });
+  const bool json_fails = fails_to_write(arguments.json_file, to_json(reports));
+  const bool junit_fails = fails_to_write(arguments.junit_file, to_junit(reports));
+  if (has_error) return exit_our_fault;
+  if (found) return exit_failure_found;
+  if (json_fails || junit_fails) return exit_bad_usage;
+  return InterruptGuard::signal() == 0 ? exit_nothing_found : exit_of_signal(InterruptGuard::signal());
 }
 
 }  // namespace
@@ -105,7 +165,7 @@ void add_explore_command(CLI::App& app, Command& chosen) {
           ->check(CLI::PositiveNumber);
   command->add_option("--strategy", arguments->strategy, "how choices are made")
       ->capture_default_str()
-      ->check(CLI::IsMember({"random"}));
+      ->check(CLI::IsMember(strategy_names()));
   command->add_option("--seed", arguments->options.seed, "all choices follow from it")->capture_default_str();
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
@@ -114,7 +174,17 @@ void add_explore_command(CLI::App& app, Command& chosen) {
                    "real time for making the schedule of each failure small; 0: as it was found")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--json", arguments->json_file, "write a report for programs to this file");
+  command->add_option("--jobs", arguments->jobs, "worker processes")
+      ->capture_default_str()
+      ->check(CLI::Range(1U, WorkerPoolOptions::jobs_max));
+  command
+      ->add_option("--hang-seconds", arguments->hang_seconds,
+                   "without a scheduling point for so long, in real time, an execution hangs")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--json", arguments->json_file,
+                      "write a report for programs to this file: one object, of several scenarios an array");
+  command->add_option("--junit", arguments->junit_file, "write a report in JUnit's format to this file");
   command->add_option("--out", arguments->out_folder, "folder for schedules")->capture_default_str();
   command->callback([=, &chosen] {
     arguments->options.minimize_seconds = std::chrono::duration<double>{arguments->minimize_seconds};

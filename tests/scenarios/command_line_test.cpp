@@ -172,7 +172,7 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
                {"explore paper/no-such", "there is no scenario \"paper/no-such\""},
                {"explore paper/one-request --executions 0", "--executions"},
                {"explore paper/one-request --strategy clever", "clever"},
-               {"explore paper/one-request paper/time-out --json x", "--json"},
+               {"explore paper/one-request --jobs 0", "--jobs"},
                {"replay no-such-file", "no-such-file: cannot be read"},
                {"minimize no-such-file", "no-such-file: cannot be read"},
                {"minimize passes.schedule", "passes.schedule: does not fail as it says"},

@@ -1,0 +1,97 @@
+#include "sim_clock/explore/worker_process.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace ltsim {
+namespace {
+
+[[noreturn]] void throw_errno(const char* what) {
+  throw std::system_error{errno, std::generic_category(), what};
+}
+
+}  // namespace
+
+WorkerProcess::WorkerProcess(WorkerOrder order, SharedProgress& progress) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe of a worker");
+  std::fflush(nullptr);  // or the child would print it again
+  const pid_t parent = getpid();
+  const pid_t id = fork();
+  if (id < 0) {
+    const int error = errno;
+    close(ends[0]);
+    close(ends[1]);
+    throw std::system_error{error, std::generic_category(), "worker process"};
+  }
+  if (id == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(0);  // it died before that
+    ::signal(SIGINT, SIG_IGN);
+    ::signal(SIGTERM, SIG_IGN);
+    order.pipe = ends[1];
+    run_worker(order, progress);
+  }
+  id_ = id;
+  descriptor_ = ends[0];
+  close(ends[1]);  // the only one that is left is the child's: it closes with it
+  fcntl(descriptor_, F_SETFL, O_NONBLOCK);
+}
+
+WorkerProcess::~WorkerProcess() {
+  if (id_ != -1) {
+    signal(SIGKILL);
+    wait();
+  }
+  close(descriptor_);
+}
+
+std::vector<WorkerMessage> WorkerProcess::receive() {
+  std::array<std::uint8_t, 16 * 1024> part{};
+  for (;;) {
+    const ssize_t count = read(descriptor_, part.data(), part.size());
+    if (count > 0) {
+      reader_.add(std::span{part}.first(static_cast<std::size_t>(count)));
+    } else if (count == 0) {
+      has_ended_ = true;
+      break;
+    } else if (errno != EINTR) {
+      break;  // nothing more has arrived
+    }
+  }
+  std::vector<WorkerMessage> messages;
+  while (auto message = reader_.next()) messages.push_back(std::move(*message));
+  return messages;
+}
+
+void WorkerProcess::signal(int signal) const noexcept {
+  if (id_ != -1) kill(id_, signal);
+}
+
+int WorkerProcess::wait() noexcept {
+  int status = 0;
+  while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+  }
+  id_ = -1;
+  return status;
+}
+
+std::string describe_end(int status) {
+  if (!WIFSIGNALED(status)) return fmt::format("exited with code {}", WEXITSTATUS(status));
+  const char* const name = sigabbrev_np(WTERMSIG(status));
+  return name == nullptr ? fmt::format("died of signal {}", WTERMSIG(status))
+                         : fmt::format("died of SIG{}", name);
+}
+
+}  // namespace ltsim
