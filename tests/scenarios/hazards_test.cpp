@@ -1,11 +1,12 @@
 // What the scenarios are there to show: outside of its envelope the published handoff breaks in each of the
 // known ways, and each hazard is found by its own invariant, from every seed; inside, nothing is ever accused.
 
+#include <algorithm>
 #include <chrono>
 #include <ostream>
 #include <stdexcept>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -115,12 +116,27 @@ INSTANTIATE_TEST_SUITE_P(Envelope, SoundScenarioTest,
 const PaperExchange* explored_exchange = nullptr;
 
 /// Explores an exchange that has no scenario of its own.
-ltsim::ExploreReport explore(const PaperExchange& exchange, std::uint64_t executions) {
+ltsim::ExploreReport explore(const PaperExchange& exchange, std::uint64_t executions,
+                             bool keep_going = false) {
   explored_exchange = &exchange;
   const ltsim::Scenario scenario{.name = "test/exchange", .description = "", .body = [](ltsim::World& in) {
                                    scenarios::run_exchange(in, *explored_exchange);
                                  }};
-  return explore(scenario, 1, executions);
+  return explore(scenario, 1, executions, keep_going);
+}
+
+TEST(Monitor, reports_at_the_end_what_did_no_harm_yet) {
+  const auto two_in_an_area = explore(*ltsim::find_scenario("paper/time-out"), 1, 5'000, true);
+  const auto filled_in_use =
+      explore(PaperExchange{.options = {.initialiser = PaperOptions::Initialiser::slave}}, 5'000, true);
+  const auto has = [](const ltsim::ExploreReport& report, std::string_view beginning) {
+    return std::ranges::any_of(report.failures, [&](const ltsim::Failure& failure) {
+      return failure.outcome.message.starts_with(beginning);
+    });
+  };
+  EXPECT_TRUE(
+      has(two_in_an_area, "I7: kernel/main writes the request while emulator/main reads the request"));
+  EXPECT_TRUE(has(filled_in_use, "I29: the segment was filled with zeros while it was in use"));
 }
 
 TEST(Envelope, is_silent_with_time_outs_that_do_not_fire) {
