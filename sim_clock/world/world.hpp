@@ -131,6 +131,9 @@ class World {
   /// violated(message) unless `holds`. After a failure it does nothing.
   void require(bool holds, std::string_view message);
 
+  /// Ends the execution here, as it stands: the scenario has seen what it is there for. It has passed.
+  void finish() { scheduler_.fail(OutcomeKind::passed, {}); }
+
   /// A choice of the scenario, made by the strategy and kept in the schedule; 0 by default.
   /// @param what   names the question in the schedule, one word
   /// @param count  number of possibilities, 1 to 256

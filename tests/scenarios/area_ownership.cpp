@@ -38,7 +38,7 @@ void AreaOwnership::enters(ltsim::TaskId task, Use use) {
   Visit visit{.task = task, .use = use};
   for (Visit& other : visits_) {
     const ltsim::Task& there = world_.scheduler().task(other.task);
-    if (there.state == ltsim::Task::State::finished || !conflict(use, other.use)) continue;
+    if (there.state == ltsim::Task::State::killed || !conflict(use, other.use)) continue;
     visit.disturbed = other.disturbed = true;
     if (first_conflict_) continue;
     first_conflict_ = fmt::format("{} {} while {} {}", world_.scheduler().task(task).name, to_string(use),

@@ -21,12 +21,15 @@
 //   I29  the segment is not initialised while it is in use
 //
 // A message begins with the invariants that the step breaks. I7 and I29 alone do no harm yet: the execution
-// goes on, and they are reported at its end if nothing else was.
+// goes on, and they are reported at its end if nothing else was. A monitor may be told to judge by one
+// invariant only; then the execution goes on after all others, however wrong things are by then.
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
@@ -45,6 +48,7 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   enum class Repeatable : bool { no, yes };
 
   struct Options {
+    std::string_view only = {};  ///< the invariant to judge by, "I4"; empty: all
     Repeatable repeatable = Repeatable::no;
     /// So many answers may be delivered for a wrong request before I1 is reported: what follows from the
     /// first one shows then.
@@ -90,19 +94,22 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   void check_when_idle();
   void check_state_word();
   void check_delivered(std::span<const std::byte> response, bool wiped_another);
-  void violated(std::string message);
+  /// @param invariants  that are broken; empty ones do not count
+  /// @param text        makes the rest of the message; called only if the monitor judges by one of them
+  /// Returns if it does not.
+  template <typename Text>
+  void violated(std::initializer_list<std::string_view> invariants, const Text& text);
   [[nodiscard]] const ltsim::Task& running() const noexcept;
   /// The request that the running task sent last.
   [[nodiscard]] std::size_t index_of_own() const noexcept;
-  [[nodiscard]] bool holds_bytes_of_another_answer(std::span<const std::byte> response,
-                                                   const Exchange& own) const noexcept;
   [[nodiscard]] const ltsim::Task* sleeping_slave() const noexcept;
   [[nodiscard]] bool waits_for_answer(const Exchange& exchange) const noexcept;
 
   ltsim::World& world_;
   protocol::PaperOptions paper_;
   Options options_;
-  std::vector<Exchange> exchanges_;  // request number 1 is exchanges_[0]
+  std::vector<Exchange> exchanges_;      // request number 1 is exchanges_[0]
+  std::vector<Bytes> invented_answers_;  // to what nobody submitted
   AreaOwnership ownership_;
   StateWordGhost state_word_;
   ltsim::ProcessId serving_ = 0;

@@ -48,7 +48,8 @@ PaperOptions options_of(const PaperExchange& exchange) {
 }
 
 /// The two sides of one execution, and what they know of each other outside of the segment: the operator, who
-/// stops the emulators when the kernel has finished. Wrappers belong to the processes that use them.
+/// stops the emulators when the kernel has finished. What belongs to a process is made in it, so that a process
+/// that is killed and started again begins anew.
 class Sides {
  public:
   Sides(ltsim::World& world, const PaperExchange& exchange)
@@ -57,6 +58,7 @@ class Sides {
   }
 
   void run_kernel() {
+    if (kernel_has_finished_) return;
     protocol::SharedMemoryPort port{segment, options_, &monitor_};
     both_open_ = port.open().has_value() && both_open_;
     std::vector<std::thread> others;
@@ -64,20 +66,31 @@ class Sides {
       others.emplace_back([this, &port] { send_requests(port); });
     send_requests(port);
     for (std::thread& other : others) other.join();
-    std::this_thread::sleep_for(50ms);  // the machine stays on for a while
-    stop_emulators();
+    kernel_has_finished_ = true;
   }
 
-  void run_emulator() {
+  /// @param index  which of the emulators
+  void run_emulator(unsigned index) {
+    serving_[index] = nullptr;
     if (emulator_delay_ > 0ns) std::this_thread::sleep_for(emulator_delay_);
     if (stopped_) return;
     MirrorPlc plc;
     protocol::SlaveSharedMemoryWrapper slave{segment, options_, &monitor_};
     emulator_models::EmulatorHandler handler{slave, plc};
-    serving_.push_back(&handler);
+    serving_[index] = &handler;
     both_open_ = slave.open().has_value() && both_open_;
     monitor_.slave_opened();
     handler.run();
+  }
+
+  void operate() {
+    do {
+      std::this_thread::sleep_for(50ms);  // the machine stays on for a while
+    } while (!kernel_has_finished_);
+    stopped_ = true;
+    for (emulator_models::EmulatorHandler* handler : serving_) {
+      if (handler != nullptr) handler->request_stop();
+    }
   }
 
   void check_at_end(ltsim::World& world) {
@@ -98,29 +111,50 @@ class Sides {
     }
   }
 
-  void stop_emulators() {
-    stopped_ = true;
-    for (emulator_models::EmulatorHandler* handler : serving_) handler->request_stop();
-  }
-
   const PaperExchange& exchange_;
   PaperOptions options_;
   ExchangeMonitor monitor_;
   std::chrono::nanoseconds emulator_delay_{0};
-  std::vector<emulator_models::EmulatorHandler*> serving_;
+  std::array<emulator_models::EmulatorHandler*, emulator_names.size()> serving_{};
   unsigned next_request_ = 1;
   bool both_open_ = true;
+  bool kernel_has_finished_ = false;
   bool stopped_ = false;
 };
 
 }  // namespace
 
+PaperExchange inside_envelope(const PaperExchange& exchange) {
+  PaperExchange sound{.requests = exchange.requests,
+                      .reads_twice = exchange.reads_twice,
+                      .emulator_is_late = exchange.emulator_is_late,
+                      .monitor = exchange.monitor};
+  if (sound.reads_twice) {
+    // The second read ends by its time-out; the first has none to fear.
+    sound.time_outs = PaperExchange::TimeOuts::as_published;
+    sound.options.read_timeout = 1h;
+  }
+  return sound;
+}
+
 void run_exchange(ltsim::World& world, const PaperExchange& exchange) {
+  constexpr ltsim::CrashGrant once{.times = 1, .restart_after = 5ms};
+  using Killed = PaperExchange::Killed;
   name_regions(world, segment, options_of(exchange));
   Sides sides{world, exchange};
-  world.process("kernel").start("main", [&] { sides.run_kernel(); });
+  ltsim::Process& kernel = world.process("kernel");
+  kernel.start("main", [&] {
+    sides.run_kernel();
+    if (exchange.killed != Killed::kernel) sides.operate();
+  });
   for (unsigned i = 0; i < exchange.emulators; ++i)
-    world.process(emulator_names.at(i)).start("main", [&] { sides.run_emulator(); });
+    world.process(emulator_names.at(i)).start("main", [&sides, i] { sides.run_emulator(i); });
+  if (exchange.killed == Killed::kernel) {
+    // Nobody would stop the emulator if the operator were killed with the kernel.
+    world.process("operator").start("main", [&] { sides.operate(); });
+    kernel.may_crash(once);
+  }
+  if (exchange.killed == Killed::emulator) world.process(emulator_names[0]).may_crash(once);
   world.run();
   sides.check_at_end(world);
 }

@@ -15,6 +15,7 @@ namespace scenarios {
 /// design is sound.
 struct PaperExchange {
   enum class TimeOuts : bool { never, as_published };
+  enum class Killed : std::uint8_t { nobody, kernel, emulator };
 
   protocol::PaperOptions options = {};   ///< the knobs; areas have room for 8 bytes, whatever they say
   TimeOuts time_outs = TimeOuts::never;  ///< never: the kernel waits for ever, whatever K8 says
@@ -23,8 +24,12 @@ struct PaperExchange {
   unsigned emulators = 1;                ///< K11: on one segment, at most 2
   bool reads_twice = false;              ///< after each answer the kernel looks whether there is more
   bool emulator_is_late = false;         ///< it is started up to 400 ms after the kernel
+  Killed killed = Killed::nobody;        ///< at most once, at any step, and started again 5 ms later
   ExchangeMonitor::Options monitor = {};
 };
+
+/// The same requests inside the envelope in which the design is sound.
+[[nodiscard]] PaperExchange inside_envelope(const PaperExchange& exchange);
 
 void run_exchange(ltsim::World& world, const PaperExchange& exchange);
 

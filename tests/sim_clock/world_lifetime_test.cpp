@@ -192,5 +192,24 @@ TEST_F(LifetimeTest, random_bytes_differ_within_an_execution_and_are_the_same_in
   EXPECT_EQ(drawn[0], drawn[1]);
 }
 
+TEST_F(LifetimeTest, an_execution_that_has_shown_enough_ends_where_it_stands_and_has_passed) {
+  const auto run_until_enough = [](const std::function<void(World&)>& enough) {
+    int looks = 0;
+    const Outcome outcome = run([&](World& world) {
+      world.process("p").start("waits", [&] {
+        for (;;) {
+          std::this_thread::sleep_for(1ms);
+          if (++looks == 3) enough(world);
+        }
+      });
+    });
+    EXPECT_EQ(looks, 3);
+    return outcome;
+  };
+  EXPECT_EQ(run_until_enough([](World& world) { world.finish(); }), Outcome{});
+  EXPECT_EQ(run_until_enough([](World& world) { world.whenever_idle([&world] { world.finish(); }); }),
+            Outcome{});
+}
+
 }  // namespace
 }  // namespace ltsim
