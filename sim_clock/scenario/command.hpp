@@ -38,6 +38,7 @@ void add_list_command(CLI::App& app, Command& chosen);
 void add_explore_command(CLI::App& app, Command& chosen);
 void add_minimize_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);
+void add_zoo_command(CLI::App& app, Command& chosen);
 
 /// @throw UsageError if there is none of that name
 [[nodiscard]] const Scenario& scenario_of_name(const std::string& name);

@@ -44,6 +44,20 @@ TEST_F(CommandLineTest, list_shows_each_scenario_with_what_it_is) {
   }
 }
 
+TEST_F(CommandLineTest, zoo_tells_what_each_strategy_needs_for_a_known_race_and_that_its_cure_holds) {
+  const Result result = ltsim("zoo --shape races/o30-lost-bit --seeds 2 --executions 2000");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const char* text : {"random", "pct", "swarm", "races/o30-lost-bit ", "  silent"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << result.output;
+}
+
+TEST_F(CommandLineTest, zoo_fails_when_a_known_race_is_missed_and_refuses_one_that_is_not_known) {
+  const Result missed = ltsim("zoo --shape races/stale-answer-modulo-8 --seeds 1 --executions 1");
+  EXPECT_EQ(missed.exit_code, 1);
+  EXPECT_NE(missed.output.find(">1"), std::string::npos) << missed.output;
+  EXPECT_EQ(ltsim("zoo --shape races/none-such").exit_code, 2);
+}
+
 TEST_F(CommandLineTest, exploring_a_sound_scenario_finds_nothing) {
   const Result result = ltsim("explore paper/three-requests --executions 1000");
   EXPECT_EQ(result.exit_code, 0);
