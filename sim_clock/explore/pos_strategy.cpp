@@ -42,6 +42,7 @@ void PosStrategy::performs(TaskId task, const Operation& operation) noexcept {
     look.priority = priorities_[task];
   }
   note_use(task, operation);
+  tasks_seen_ = std::max(tasks_seen_, task + std::size_t{1});
   priorities_[task] = 0;
   for (std::size_t other = 0; other < tasks_seen_; ++other) {
     if (priorities_[other] != 0 && depend(pending_[other], operation)) priorities_[other] = 0;

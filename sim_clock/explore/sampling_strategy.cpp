@@ -17,6 +17,7 @@ void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   experience_->things.begin();
   all_matters_ = generator_.below(4) == 0;
   time_mode_ = begin();
+  clock_turns_left_ = std::uint32_t{8} << generator_.below(8);
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
   slow_moments().begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
   for (Occasions& fault : experience_->faults)
@@ -44,7 +45,9 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
       if (!matters(choice.pending[choice.running]) || slow_moments().pass() == 0) return {};
       return draw_slow_moment();
     case TimeMode::clock:
-      if (choice.until_next_timer > longest_silence || !clock_goes_first(choice)) return {};
+      if (choice.until_next_timer > longest_silence || clock_turns_left_ == 0) return {};
+      if (!clock_goes_first(choice)) return {};
+      --clock_turns_left_;
       return {.duration = std::max(choice.until_next_timer, SimTime{1})};
   }
   return {};

@@ -6,7 +6,8 @@
 //   silence  one to three times, each before an operation drawn uniformly from those of the whole execution
 //            that matter;
 //   clock    the clock takes part like a task: it "runs" by going on to the next timer, when the strategy
-//            chooses it (clock_goes_first()).
+//            chooses it (clock_goes_first()); at most 8, 16 ... 1024 times, drawn for each execution: a peer that
+//            polls for ever must not keep the one it waits for from running for ever.
 // A slow moment lasts for a time drawn log-uniformly from 1 us to 2 s, or for a multiple of the time to the next
 // timer, or of the last such time known: an answer that is five time-outs late is one decision. Nobody who could run is held
 // up for more than 16 s at a time: that is no slow machine any more.
@@ -80,6 +81,7 @@ class SamplingStrategy : public Strategy {
 
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
+  std::uint32_t clock_turns_left_ = 0;
   unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
   Experience own_experience_;
   Experience* experience_ = &own_experience_;

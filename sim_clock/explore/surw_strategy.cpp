@@ -13,8 +13,7 @@ SamplingStrategy::TimeMode SurwStrategy::begin() noexcept {
   for (std::size_t task = 0; task < tasks_seen_; ++task) {
     left_[task] = expected_[interesting_][task];
     left_sum_ += left_[task];
-    for (std::size_t thing = 0; thing < things().count(); ++thing) passed_[thing][task] = 0;
-    passed_[everything][task] = 0;
+    for (auto& counts : passed_) counts[task] = 0;
   }
   clock_left_ = 0;
   const TimeMode mode = draw_time_mode();

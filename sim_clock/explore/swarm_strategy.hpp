@@ -54,8 +54,8 @@ class SwarmStrategy final : public Strategy {
   SurwStrategy surw_;
   StallStrategy stall_;
   std::array<SamplingStrategy*, members_count> members_{&random_, &pct_, &pos_, &surw_, &stall_};
-  static constexpr std::array<Member, 16> cycle{pos,  surw, pct, surw, pos,   random, surw, pos,
-                                                surw, pos,  pct, pos,  stall, surw,   pos,  random};
+  static constexpr std::array<Member, 16> cycle{pos,  surw, random, surw, pct,   pos,  surw, pos,
+                                                surw, pos,  random, surw, stall, surw, pct,  pos};
   std::uint64_t executions_ = 0;                       // that count
   std::array<std::uint32_t, members_count> yields_{};  // of late
   std::size_t drawn_ = 0;
