@@ -108,6 +108,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
   ExploreReport report;
   HashSet traces{distinct_schedules_max};
   world_.coverage().forget();
+  world_.set_default_cpu(options.cpu);
   while (report.executions < options.executions_max) {
     if (options.seconds_max && report.executions % executions_per_look_at_the_time == 0 &&
         elapsed() >= *options.seconds_max) {
@@ -159,6 +160,7 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                  .schedule = {.scenario = std::string{scenario.name},
                               .outcome = outcome.kind,
                               .message = one_line(outcome.message),
+                              .cpu = world_.scheduler().cpu(),
                               .deviations = recording.deviations()},
                  .choices_count = recording.deviations().size(),
                  .story = {},
@@ -186,6 +188,7 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
   const SignalGuard signals;
+  world_.set_default_cpu(schedule.cpu);
   {
     // What is initialised on first use was so when the schedule was recorded.
     AnchorTracker anchors{world_, nullptr};

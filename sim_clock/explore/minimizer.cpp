@@ -35,6 +35,7 @@ bool is_slow_moment(const Deviation& deviation) noexcept {
 
 MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOptions& options) {
   const SignalGuard signals;
+  world_.set_default_cpu(failing.cpu);
   SearchBudget budget{options.executions_max, options.points_max, options.seconds_max};
   budget_ = &budget;
   is_the_failure_ = [&](const Outcome& outcome) { return same_failure(outcome, failing); };

@@ -159,8 +159,9 @@ std::string one_line(std::string message) {
 std::string to_string(const Schedule& schedule) {
   const std::string message = one_line(schedule.message);
   std::string text =
-      fmt::format("{}\nscenario  {}\nmemory    {}\noutcome   {}{}{}\n", header, schedule.scenario,
-                  only_memory, to_string(schedule.outcome), message.empty() ? "" : ": ", message);
+      fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", header, schedule.scenario,
+                  only_memory, schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
+                  to_string(schedule.outcome), message.empty() ? "" : ": ", message);
   for (const Deviation& deviation : schedule.deviations) text += to_string(deviation) + "\n";
   return text;
 }
@@ -190,6 +191,11 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     } else if (words.front() == "memory") {
       if (words.size() != 2 || words[1] != only_memory)
         return error("the only memory model there is, is \"sc\"");
+    } else if (words.front() == "cpu") {
+      const bool known =
+          words.size() == 2 && (words[1] == to_string(Cpu::many) || words[1] == to_string(Cpu::one_fifo));
+      if (!known) return error("a cpu line says \"many\" or \"one-fifo\"");
+      schedule.cpu = words[1] == to_string(Cpu::many) ? Cpu::many : Cpu::one_fifo;
     } else if (words.front() == "outcome") {
       const std::string_view rest = rest_after_first_word(line);
       const std::size_t colon = std::min(rest.find(':'), rest.size());
@@ -206,10 +212,10 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       deviation->line = number;
       schedule.deviations.push_back(std::move(*deviation));
     } else {
-      return error(
-          fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, outcome, switch, "
-                      "time, stall, fault, crash, choose",
-                      words.front()));
+      return error(fmt::format(
+          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, switch, "
+          "time, stall, fault, crash, choose",
+          words.front()));
     }
   }
   number = number == 0 ? 1 : number;

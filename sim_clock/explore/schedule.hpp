@@ -3,6 +3,7 @@
 //   ltsim schedule 1
 //   scenario  paper/time-out
 //   memory    sc
+//   cpu       one-fifo          (this line only where the machine has one processor)
 //   outcome   invariant: I1: the answer to request 1 was delivered for request 2
 //   switch    kernel/main    before atomic_load segment.state #3    to emulator/main
 //   time      kernel/main    before clock_read - #2                 +20ms
@@ -33,6 +34,7 @@
 
 #include "sim_clock/check/outcome.hpp"
 #include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/world/cpu.hpp"
 #include "sim_clock/world/fault_kind.hpp"
 
 namespace ltsim {
@@ -64,6 +66,7 @@ struct Schedule {
   std::string scenario;
   OutcomeKind outcome = OutcomeKind::passed;
   std::string message;  ///< of the outcome; one line
+  Cpu cpu = Cpu::many;
   std::vector<Deviation> deviations;
 };
 

@@ -5,7 +5,7 @@
 
 namespace ltsim {
 
-std::vector<std::string> strategy_names() { return {"random", "pct", "pos", "surw", "stall", "swarm"}; }
+std::vector<std::string> strategy_names() { return {"swarm", "random", "pct", "pos", "surw", "stall"}; }
 
 std::unique_ptr<Strategy> make_strategy(std::string_view name) {
   if (name == "random") return std::make_unique<RandomStrategy>();

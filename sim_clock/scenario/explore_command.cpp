@@ -58,9 +58,10 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
   const std::string call = as_shell_word(std::string{program});
   if (!failure.has_schedule) {
     // All up to there: what the strategy has learned by then belongs to it.
-    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}\n", call,
+    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}{}\n", call,
                as_shell_word(failure.schedule.scenario), arguments.strategy, arguments.options.seed,
-               arguments.jobs, failure.execution, arguments.options.keep_going ? " --keep-going" : "");
+               arguments.jobs, failure.execution, arguments.options.cpu == Cpu::many ? "" : " --cpu one-fifo",
+               arguments.options.keep_going ? " --keep-going" : "");
   } else if (written) {
     fmt::print("  replay:  {} replay {}\n", call, as_shell_word(path));
   } else {
@@ -167,6 +168,15 @@ void add_explore_command(CLI::App& app, Command& chosen) {
       ->capture_default_str()
       ->check(CLI::IsMember(strategy_names()));
   command->add_option("--seed", arguments->options.seed, "all choices follow from it")->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--cpu",
+          [arguments](const std::string& cpu) {
+            arguments->options.cpu = cpu == to_string(Cpu::many) ? Cpu::many : Cpu::one_fifo;
+          },
+          "processors of the machine, unless the scenario says otherwise; one-fifo: one that honours "
+          "SCHED_FIFO priorities")
+      ->check(CLI::IsMember({std::string{to_string(Cpu::many)}, std::string{to_string(Cpu::one_fifo)}}));
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
   command

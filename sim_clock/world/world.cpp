@@ -155,6 +155,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   wall_clock_ahead_ = wall_clock_epoch;
   in_execution = this;
   scheduler_.reset(strategy, listener);
+  scheduler_.set_cpu(default_cpu_);
   objects_.reset();
   segments_.reset();
   checks_.reset();

@@ -185,7 +185,7 @@ class World {
   /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
   void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
 
-  /// Which processors the simulated machine has; Cpu::many unless told otherwise.
+  /// Which processors the simulated machine has in this execution.
   void set_cpu(Cpu cpu) noexcept { scheduler_.set_cpu(cpu); }
 
   /// What `task` ("process/name") is blocked in, or nothing if it is not blocked. Of a process that was started
@@ -208,6 +208,9 @@ class World {
   /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
   /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
+  /// Which processors the machine has in the executions from the next one on, unless their scenario says
+  /// otherwise. Cpu::many at first.
+  void set_default_cpu(Cpu cpu) noexcept { default_cpu_ = cpu; }
   /// An execution that has passed up to here still fails if there was a race, or else if a mutex is held.
   void end_execution() noexcept;
 
@@ -301,6 +304,7 @@ class World {
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
+  Cpu default_cpu_ = Cpu::many;
   std::uint64_t execution_number_ = 0;
   std::uint64_t random_draws_count_ = 0;
   SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock

@@ -100,7 +100,7 @@ TEST_F(CommandLineTest, the_json_report_has_the_published_fields) {
   const auto report = nlohmann::json::parse(read("report.json"));
   EXPECT_EQ(report.at("schema"), "ltsim.explore/1");
   EXPECT_EQ(report.at("scenario"), "paper/time-out");
-  EXPECT_EQ(report.at("strategy"), "random");
+  EXPECT_EQ(report.at("strategy"), "swarm");
   EXPECT_EQ(report.at("seed"), 7);
   for (const char* number : {"executions", "decisions", "seconds", "distinct_schedules"})
     EXPECT_GT(report.at(number), 0) << number;

@@ -9,7 +9,7 @@
 
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/explorer.hpp"
-#include "sim_clock/explore/random_strategy.hpp"
+#include "sim_clock/explore/swarm_strategy.hpp"
 #include "tests/scenarios/scenario_name.hpp"
 #include "tests/support/shell.hpp"
 
@@ -18,6 +18,7 @@ namespace {
 using ltsim::Explorer;
 using ltsim::find_scenario;
 using ltsim::RandomStrategy;
+using ltsim::SwarmStrategy;
 
 ltsim::World& world() {
   static ltsim::World only;
@@ -28,10 +29,12 @@ ltsim::World& world() {
 std::string hashes_of(const char* scenario, unsigned count) {
   const ltsim::SignalGuard signals;
   Explorer explorer{world()};
-  RandomStrategy strategy;
+  SwarmStrategy strategy;
   std::string lines;
   for (unsigned seed = 1; seed <= count; ++seed) {
     lines += fmt::format("{:016x}\n", explorer.execute(*find_scenario(scenario), strategy, seed, nullptr));
+    strategy.learn(
+        {.points = world().scheduler().points(), .new_states = world().coverage().new_in_execution()});
   }
   return lines;
 }

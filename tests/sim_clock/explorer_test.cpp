@@ -1,5 +1,8 @@
 #include "sim_clock/explore/explorer.hpp"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <atomic>
 #include <memory>
 #include <thread>
@@ -250,6 +253,33 @@ TEST_F(ExplorerTest, choices_during_and_after_a_slow_moment_of_a_task_have_place
     ASSERT_EQ(replayed.trace_hash, recorded.trace_hash) << to_string(recorded.schedule);
     ASSERT_FALSE(replayed.divergence) << to_string(recorded.schedule);
   }
+}
+
+/// Fails wherever two tasks without a lock can overlap, so not on one processor if both have a priority.
+void overlaps(World& world) {
+  const auto inside = std::make_shared<std::atomic<int>>(0);
+  for (const char* name : {"one", "two"}) {
+    world.process("p").start(name, [inside, &world] {
+      const sched_param parameters{.sched_priority = 5};
+      pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+      world.require(++*inside == 1, "two are inside");
+      --*inside;
+    });
+  }
+  world.run();
+}
+
+TEST_F(ExplorerTest, one_processor_is_an_option_of_the_exploration_and_stands_in_its_schedules) {
+  const Scenario scenario{"demo/overlaps", "", &overlaps};
+  RandomStrategy strategy;
+  ExploreOptions options = at_most(200);
+  const ExploreReport on_many = Explorer{world()}.explore(scenario, strategy, options);
+  ASSERT_EQ(on_many.failures.size(), 1U);
+  options.cpu = Cpu::one_fifo;
+  EXPECT_TRUE(Explorer{world()}.explore(scenario, strategy, options).failures.empty());
+  // The schedule brings its own machine along.
+  EXPECT_EQ(Explorer{world()}.replay(scenario, on_many.failures.front().schedule, nullptr).outcome.message,
+            "two are inside");
 }
 
 TEST(HashSet, counts_different_values_up_to_its_bound) {

@@ -63,6 +63,16 @@ TEST(Schedule, what_was_written_reads_back_equal) {
   EXPECT_EQ(again->message, schedule->message);
 }
 
+TEST(Schedule, the_one_processor_of_a_machine_is_written_and_read) {
+  Schedule schedule;
+  schedule.scenario = "a/b";
+  EXPECT_EQ(to_string(schedule).find("cpu"), std::string::npos);
+  schedule.cpu = Cpu::one_fifo;
+  const auto again = parse_schedule(to_string(schedule));
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_EQ(again->cpu, Cpu::one_fifo);
+}
+
 TEST(Schedule, a_message_of_several_lines_is_written_as_one) {
   Schedule schedule{
       .scenario = "a/b", .outcome = OutcomeKind::crash, .message = "one\ntwo", .deviations = {}};
@@ -100,6 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSchedule{"no_scenario", "ltsim schedule 1\nmemory sc\n", 2, "which scenario"},
         BadSchedule{"unknown_word", HEAD "swich a to b\n", 3, "swich"},
         BadSchedule{"unknown_outcome", HEAD "outcome lost\n", 3, "lost"},
+        BadSchedule{"unknown_cpu", HEAD "cpu two\n", 3, "one-fifo"},
         BadSchedule{"unknown_memory", HEAD "memory c11\n", 3, "sc"},
         BadSchedule{"switch_to_nowhere", HEAD "switch a/b before read x #1\n", 3, "switch TASK before"},
         BadSchedule{"no_occurrence", HEAD "switch a/b before read x to c/d\n", 3, "#N"},
