@@ -21,6 +21,12 @@ class AnchorTracker final : public StepListener {
   /// "kernel/main before sem_wait handoff #2"; "- start" before the first step.
   [[nodiscard]] const std::string& anchor() const noexcept { return anchor_; }
 
+  /// Where the task stands before its latest step; "" if it has made none.
+  [[nodiscard]] const std::string& arrived_at(TaskId task) const noexcept {
+    static const std::string nowhere;
+    return task < arrived_at_.size() ? arrived_at_[task] : nowhere;
+  }
+
   void arrives(const Task& task, const Operation& operation) noexcept override;
   void performs(const Task& task, const Operation& operation) noexcept override;
   void blocks(const Task& task) noexcept override;

@@ -8,6 +8,7 @@
 #include "sim_clock/explore/recording_strategy.hpp"
 #include "sim_clock/explore/same_failure.hpp"
 #include "sim_clock/explore/search_filters.hpp"
+#include "sim_clock/explore/silence_watch.hpp"
 
 namespace ltsim {
 namespace {
@@ -47,10 +48,21 @@ MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOption
     report.reproduced = true;
     best_ = std::move(*given);
     leave_out_lines();
+    const auto is_alike = [&](const Outcome& outcome) { return alike_failure(outcome, failing); };
+    if (join_slow_moments()) leave_out_lines();
+    if (!options.numbers_matter) {
+      // A hundred lines that say the same number are no use to anybody.
+      const auto is_the_same = std::exchange(is_the_failure_, is_alike);
+      if (join_slow_moments()) {
+        leave_out_lines();
+      } else {
+        is_the_failure_ = is_the_same;
+      }
+    }
     report.smallest = search_for_shorter();
     if (!options.numbers_matter) {
       // Only now: a search that may change the numbers could change the bug as well.
-      is_the_failure_ = [&](const Outcome& outcome) { return alike_failure(outcome, failing); };
+      is_the_failure_ = is_alike;
       leave_out_lines();
     }
     strengthen_anchors();
@@ -121,6 +133,37 @@ bool Minimizer::leave_out_lines() {
     if (chunk == 1 && !shorter) return true;
     if (!shorter || chunk > best_.deviations.size()) chunk = std::max<std::size_t>(chunk / 2, 1);
   }
+}
+
+bool Minimizer::join_slow_moments() {
+  const auto lets_all_wait = [](const Deviation& line) { return line.kind == Deviation::Kind::pass_time; };
+  std::vector<Deviation> others = best_.deviations;
+  std::erase_if(others, lets_all_wait);
+  if (best_.deviations.size() - others.size() < 2) return false;
+  AnchorTracker anchors{world_, nullptr};
+  ReplayStrategy replay{best_.deviations, world_, anchors};
+  SilenceWatch watch{replay, anchors};
+  if (!record(watch, anchors)) return false;
+  // The steps between the moments took time as well; a silence that ends in the middle of one ends surely after the
+  // last look of a peer that polls.
+  for (const unsigned halves : {1U, 0U, 2U}) {
+    if (!has_budget(end_of_leaving_out)) return false;
+    std::vector<Deviation> changed = others;
+    for (const SilenceWatch::Silence& silence : watch.silences()) {
+      for (const std::string& place : silence.held_up_at) {
+        Deviation stall;
+        stall.kind = Deviation::Kind::stall;
+        stall.anchor = place;
+        stall.passes = silence.passed + halves * silence.shortest / 2;
+        changed.push_back(std::move(stall));
+      }
+    }
+    auto found = attempt(changed);
+    if (!found || found->deviations.size() >= best_.deviations.size()) continue;
+    best_ = std::move(*found);
+    return true;
+  }
+  return false;
 }
 
 bool Minimizer::search_for_shorter() {

@@ -2,6 +2,8 @@
 //
 // Stages, each within what the ones before have left of the budget:
 //   1  lines are left out, many at once and then one by one, as long as the failure stays (delta debugging);
+//      where time passes again and again, as for a peer that polls, one silence of who was held up is tried for
+//      all of it;
 //   2  whatever was found by then, shorter schedules are searched for (schedule_search.hpp), first among
 //      deviations like those that are left, then among all;
 //   3  of equivalent places for a line the one is taken that is most likely to survive a rebuild;
@@ -66,6 +68,9 @@ class Minimizer {
 
   /// @return whether each line was found to be needed
   bool leave_out_lines();
+  /// Puts silences of those who were held up in place of the lines that let time pass for everybody, one for all
+  /// the lines in a row. @return whether that fails too, with fewer lines
+  bool join_slow_moments();
   /// @return whether no shorter schedule exists among those that were to be tried
   bool search_for_shorter();
   void strengthen_anchors();
