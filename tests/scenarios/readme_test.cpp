@@ -1,6 +1,5 @@
 // What the README shows is what the programs print. A block that begins with "    $ ltsim ..." is run, and
-// must give the lines below it; the lines of the trace must stand in the trace of the schedule that the first
-// block wrote.
+// must give the lines below it.
 
 #include <algorithm>
 #include <fstream>
@@ -66,28 +65,6 @@ TEST_F(ReadmeTest, commands_print_what_is_shown) {
     EXPECT_EQ(run(readme_[i].substr(indent.size() + 2)), block_at(i + 1)) << readme_[i];
   }
   EXPECT_EQ(commands, 2);
-}
-
-TEST_F(ReadmeTest, steps_of_the_trace_are_those_of_the_first_schedule) {
-  const auto first = std::find_if(readme_.begin(), readme_.end(),
-                                  [](const auto& line) { return line.starts_with(indent + "$ "); });
-  ASSERT_NE(first, readme_.end());
-  run(first->substr(indent.size() + 2));
-  std::vector<std::string> trace =
-      run(shown_program + " replay out/paper-semaphore-reset.schedule --trace text");
-  for (std::string& line : trace) line.erase(0, line.find_first_not_of(' '));
-  const auto begin = std::find_if(readme_.begin(), readme_.end(), [](const auto& line) {
-    return line.find("us  emulator/main") != std::string::npos;
-  });
-  ASSERT_NE(begin, readme_.end());
-  const auto steps = block_at(static_cast<std::size_t>(begin - readme_.begin()));
-  EXPECT_EQ(steps.size(), 9U);
-  auto from = trace.begin();
-  for (const std::string& step : steps) {
-    const std::string wanted = step.substr(step.find_first_not_of(' '));
-    from = std::find(from, trace.end(), wanted);
-    ASSERT_NE(from, trace.end()) << wanted;
-  }
 }
 
 }  // namespace
