@@ -40,7 +40,7 @@ SearchFilter search_filter(Breadth breadth, const AddressedSchedule& schedule) {
     filter.durations.erase(filter.durations.begin(), filter.durations.end() - own_durations_max);
   if (breadth != Breadth::own_choices) {
     // Some time-out of a program lies between two of these, so that it passes once and not twice.
-    filter.durations.insert(filter.durations.end(), {1ms, 10ms, 50ms, 150ms, 1s});
+    filter.durations.insert(filter.durations.end(), {1ms, 3ms, 15ms, 50ms, 150ms, 1s});
     make_distinct(filter.durations);
   }
   return filter;
