@@ -181,6 +181,13 @@ bool Minimizer::search_for_shorter() {
     const auto end = search.deepen(filter, best_.deviations.size() - 1, equivalence, until);
     return end != ScheduleSearch::End::out_of_budget;  // what is found first is the smallest
   };
+  // Many lines mostly stand for few: deepening to their number would never come to an end.
+  constexpr std::size_t many = 4;
+  constexpr std::size_t few = 2;
+  if (best_.deviations.size() > many) {
+    static_cast<void>(search.deepen(silences_filter(best_.addressed), few,
+                                    ScheduleSearch::Equivalence::causal, half_of_the_rest()));
+  }
   for (const Breadth breadth : {Breadth::own_choices, Breadth::own_kinds, Breadth::everything}) {
     deepen(search_filter(breadth, best_.addressed), ScheduleSearch::Equivalence::causal, half_of_the_rest());
     while (best_.deviations.size() > 2 &&

@@ -46,4 +46,17 @@ SearchFilter search_filter(Breadth breadth, const AddressedSchedule& schedule) {
   return filter;
 }
 
+SearchFilter silences_filter(const AddressedSchedule& schedule) {
+  using namespace std::chrono_literals;
+  SearchFilter filter;
+  filter.whole_machine = filter.until_next_timer = false;
+  SimTime passed{0};
+  for (const AddressedDeviation& deviation : schedule) {
+    if (deviation.at.question == Question::slow_moment && !deviation.slow.others_go_on)
+      passed += deviation.slow.duration;
+  }
+  filter.durations = {1ms, passed + passed / 2};
+  return filter;
+}
+
 }  // namespace ltsim

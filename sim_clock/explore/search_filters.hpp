@@ -16,6 +16,10 @@ enum class Breadth : std::uint8_t {
 
 [[nodiscard]] SearchFilter search_filter(Breadth breadth, const AddressedSchedule& schedule);
 
+/// What could stand for slow moments of the whole machine that are many: switches, and silences of single tasks as long
+/// as all of them and half as long again, or short.
+[[nodiscard]] SearchFilter silences_filter(const AddressedSchedule& schedule);
+
 /// 1us, 2us, 5us, 10us ... 1000s: what durations in a minimal schedule look like.
 inline constexpr std::array<SimTime, 28> round_durations = [] {
   std::array<SimTime, 28> durations{};
