@@ -86,11 +86,6 @@ struct Operation {
   }
 };
 
-/// Whether the operation acts on something in particular, so that others can act on it too.
-[[nodiscard]] constexpr bool acts_on_something(const Operation& operation) noexcept {
-  return operation.object != 0 || operation.offset != 0;
-}
-
 /// Whether the order of the two can matter to anybody: they act on the same thing, and one changes it.
 /// Operations that act on nothing in particular (clocks, sleeping) depend on nothing.
 [[nodiscard]] bool depend(const Operation& one, const Operation& other) noexcept;
