@@ -44,6 +44,8 @@ class VirtualClock {
   /// Disarms the timer of `sleeper`; one that is not armed is left alone.
   void cancel(TaskId sleeper) noexcept;
 
+  /// Since reset().
+  [[nodiscard]] bool any_armed_ever() const noexcept { return armed_ever_ != 0; }
   [[nodiscard]] bool any_armed() const noexcept { return armed_count_ != 0; }
   /// Earliest deadline; `never` when no timer is armed.
   [[nodiscard]] SimTime next_deadline() const noexcept {

@@ -27,6 +27,8 @@ struct TaskChoice {
   /// that goes on with it for long will never see what it waits for.
   bool running_gives_way = false;
   std::span<const Operation> pending;  ///< by task number: what each will do next
+  /// One bit a task, 64 to a word: its pending operation has begun. It had to wait in it, and goes on from there.
+  std::span<const std::uint64_t> under_way;
 };
 
 /// Time that passes although somebody could run.
@@ -43,8 +45,9 @@ struct SlowMomentChoice {
   /// Whether it is about to take a step, and others_go_on is a possible answer; otherwise it has just stopped
   /// being able to run, and only time for all may pass.
   bool running_can_be_held_up = true;
-  std::span<const std::uint64_t> runnable;  ///< one bit a task, 64 to a word; never empty
-  std::span<const Operation> pending;       ///< by task number: what each will do next
+  std::span<const std::uint64_t> runnable;   ///< one bit a task, 64 to a word; never empty
+  std::span<const Operation> pending;        ///< by task number: what each will do next
+  std::span<const std::uint64_t> under_way;  ///< as in TaskChoice
 };
 
 /// What an execution was like, for strategies that learn.

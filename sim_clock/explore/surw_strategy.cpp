@@ -65,7 +65,8 @@ std::size_t SurwStrategy::choose_task(const TaskChoice& choice) noexcept {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < choice.options.size(); ++i) {
     const std::uint64_t task = choice.options[i];
-    const bool waits = next_ != nobody && task != next_ && is_interesting(choice.pending[task]);
+    const bool waits = next_ != nobody && task != next_ && !contains(choice.under_way, task) &&
+                       is_interesting(choice.pending[task]);
     if (!waits && !(choice.running_gives_way && task == choice.running)) candidates[count++] = i;
   }
   if (count == 0) return draw_waiting(choice);
@@ -90,13 +91,13 @@ bool SurwStrategy::clock_goes_first(const SlowMomentChoice& choice) noexcept {
   if (next_ == nobody) return false;
   bool all_wait = true;
   for_each_task(choice.runnable, [&](TaskId task) {
-    all_wait = all_wait && task != next_ && is_interesting(choice.pending[task]);
+    all_wait = all_wait && task != next_ && !contains(choice.under_way, task) &&
+               is_interesting(choice.pending[task]);
   });
   if (!all_wait) return false;
   if (next_ != the_clock) {
     // Whose turn it is sleeps: time goes on.
-    const bool can_run = (choice.runnable[next_ / 64] >> (next_ % 64) & 1U) != 0;
-    if (can_run || clock_left_ == 0) return false;
+    if (contains(choice.runnable, next_) || clock_left_ == 0) return false;
   }
   --clock_left_;
   --left_sum_;

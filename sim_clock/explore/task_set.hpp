@@ -9,6 +9,11 @@
 
 namespace ltsim {
 
+/// @param set  may be shorter than the task's number: it is not in it then
+[[nodiscard]] inline bool contains(std::span<const std::uint64_t> set, std::size_t task) noexcept {
+  return task / 64 < set.size() && (set[task / 64] >> (task % 64) & 1U) != 0;
+}
+
 template <typename Function>
 void for_each_task(std::span<const std::uint64_t> set, Function&& function) {
   for (std::size_t word = 0; word < set.size(); ++word) {

@@ -43,14 +43,16 @@ class Faults {
   /// @param variants_count  >= 1
   /// @return                0: it does not; otherwise 1 to variants_count
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept {
-    return left(kind) == 0 ? 0 : ask(kind, variants_count);
+    return can_strike(kind) ? ask(kind, variants_count) : 0;
   }
   /// The same where there is one way only.
   [[nodiscard]] bool strikes(FaultKind kind) noexcept { return strike(kind, 1) != 0; }
 
-  [[nodiscard]] bool crash_is_possible() const noexcept {
-    return left_[static_cast<std::size_t>(FaultKind::crash)] != 0;
+  /// Whether the kind was granted and is not used up.
+  [[nodiscard]] bool can_strike(FaultKind kind) const noexcept {
+    return left_[static_cast<std::size_t>(kind)] != 0;
   }
+  [[nodiscard]] bool crash_is_possible() const noexcept { return can_strike(FaultKind::crash); }
   /// Before any task runs: the bodies of processes that may start again are copied.
   void prepare_restarts();
   /// Asks whether one of the processes that run is killed here, and kills it.

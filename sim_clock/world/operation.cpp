@@ -88,25 +88,6 @@ std::string_view to_string(OperationKind kind) noexcept {
   return "?";
 }
 
-bool can_be_polling(OperationKind kind) noexcept {
-  switch (kind) {
-    case OperationKind::read:
-    case OperationKind::atomic_load:
-    case OperationKind::atomic_exchange:  // the loop of a spin lock
-    case OperationKind::sem_open:
-    case OperationKind::sem_trywait:
-    case OperationKind::sem_getvalue:
-    case OperationKind::mutex_trylock:
-    case OperationKind::shm_open:
-    case OperationKind::shm_status:
-    case OperationKind::clock_read:
-    case OperationKind::yield:
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool changes_what_others_see(OperationKind kind) noexcept {
   switch (kind) {
     case OperationKind::write:

@@ -62,7 +62,22 @@ enum class OperationKind : std::uint8_t {
 }
 
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
-[[nodiscard]] bool can_be_polling(OperationKind kind) noexcept;
+[[nodiscard]] constexpr bool can_be_polling(OperationKind kind) noexcept {
+  // Asked at each scheduling point.
+  constexpr std::uint64_t polling = [] {
+    std::uint64_t bits = 0;
+    for (const OperationKind looks :
+         {OperationKind::read, OperationKind::atomic_load,
+          OperationKind::atomic_exchange,  // the loop of a spin lock
+          OperationKind::sem_open, OperationKind::sem_trywait, OperationKind::sem_getvalue,
+          OperationKind::mutex_trylock, OperationKind::shm_open, OperationKind::shm_status,
+          OperationKind::clock_read, OperationKind::yield}) {
+      bits |= std::uint64_t{1} << static_cast<unsigned>(looks);
+    }
+    return bits;
+  }();
+  return (polling >> static_cast<unsigned>(kind) & 1) != 0;
+}
 
 /// Whether it changes something for other tasks, whatever the state of the world.
 [[nodiscard]] bool changes_what_others_see(OperationKind kind) noexcept;

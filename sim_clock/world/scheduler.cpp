@@ -23,6 +23,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   running_ = nullptr;
   clock_.reset();
   runnable_.fill(0);
+  under_way_.fill(0);
   runnable_count_ = 0;
   stalled_count_ = 0;
   for (std::size_t i = 0; i < tasks_count_; ++i) {
@@ -37,7 +38,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   unfinished_count_ = 0;
   unfinished_in_.fill(0);
   points_ = 0;
-  points_max_ = points_max_default;
+  set_points_max(points_max_default);
   decisions_ = 0;
   blocked_ever_ = 0;
   hash_ = 0;
@@ -61,12 +62,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
     tasks_.back()->storage = std::make_unique<TaskStorage>();
   }
   Task& task = *tasks_[tasks_count_];
-  task.name.assign(world_.process_name(process));
-  // Names do not repeat within an execution: the tasks of a process that was started again are others.
-  const unsigned incarnation = world_.incarnation(process);
-  if (incarnation != 1) task.name.append("@").append(std::to_string(incarnation));
-  task.name.append("/").append(name);
-  make_one_word(task.name);
+  set_name(task, process, name);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     if (tasks_[i]->name != task.name) continue;
     fail(OutcomeKind::unsupported,
@@ -93,13 +89,28 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
-  task.context.prepare(task.storage->stack_top(), TaskStorage::stack_bytes, task.storage->thread_pointer(),
-                       &run_task, &task);
+  task.context.prepare(task.storage->stack_top(), task.storage->thread_pointer(), &run_task, &task);
   world_.checks().task_begins(task.id);
   ++unfinished_count_;
   ++unfinished_in_[process];
   make_runnable(task);
   return task;
+}
+
+void Scheduler::set_name(Task& task, ProcessId process, std::string_view name) {
+  const std::string& process_name = world_.process_name(process);
+  // Names do not repeat within an execution: the tasks of a process that was started again are others.
+  const unsigned incarnation = world_.incarnation(process);
+  const std::string_view pooled =
+      task.name;  // the next execution mostly gives the same names in the same order
+  if (incarnation == 1 && pooled.size() == process_name.size() + 1 + name.size() && pooled.ends_with(name) &&
+      pooled.starts_with(process_name) && pooled[process_name.size()] == '/') {
+    return;
+  }
+  task.name.assign(process_name);
+  if (incarnation != 1) task.name.append("@").append(std::to_string(incarnation));
+  task.name.append("/").append(name);
+  make_one_word(task.name);
 }
 
 void Scheduler::run() {
@@ -151,42 +162,7 @@ void Scheduler::finish_running() noexcept {
   LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
-void Scheduler::point(Operation operation) noexcept {
-  Task& self = *running_;
-  pending_[self.id] = operation;
-  clock_.pass(point_cost);
-  ++points_;
-  if (in_fair_tail()) [[unlikely]]
-    pass_fair_tail(self, operation);
-  if (listener_ != nullptr) [[unlikely]]
-    listener_->arrives(self, operation);
-  if (clock_.next_deadline() <= clock_.now()) wake_due();
-  if (world_.faults().crash_is_possible()) [[unlikely]] {
-    world_.faults().choose_crash();
-    if (self.state == Task::State::killed) leave_killed();
-  }
-  const bool give_way = gives_way(self, operation);
-  if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
-  if (runnable_count_ > 1) {
-    // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
-    const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
-    if (cpu_ != Cpu::many && operation.kind == OperationKind::yield) self.ready_since = ready_ever_++;
-    const auto options = candidates(from);
-    const TaskId next =
-        options.size() == 1 ? static_cast<TaskId>(options[0]) : choose_task(options, self.id, give_way);
-    if (next != self.id) switch_to(*tasks_[next]);
-  }
-  mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(operation.kind)} << 40U |
-      std::uint64_t{operation.bytes} << 32U | (operation.object == 0 ? 0 : operation.offset));
-  mix(std::uint64_t{operation.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
-  if (strategy_follows_steps_) strategy_->performs(self.id, operation);
-  if (listener_ != nullptr) [[unlikely]]
-    listener_->performs(self, operation);
-  if (fetches_are_watched_) [[unlikely]]
-    world_.fetches().performs(self, operation);
-}
-
-bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {
+inline bool Scheduler::gives_way(Task& task, Operation operation) noexcept {
   const bool looks = can_be_polling(operation.kind) ||
                      (operation.kind == OperationKind::atomic_update && task.update_failed);
   task.update_failed = false;
@@ -206,6 +182,43 @@ bool Scheduler::gives_way(Task& task, const Operation& operation) noexcept {
   return operation.kind == OperationKind::yield || task.looks_count >= looks_before_giving_way;
 }
 
+void Scheduler::point(Operation operation) noexcept {
+  Task& self = *running_;
+  // What follows looks at the copy: a parameter with an address would be written to the stack and read back at once.
+  Operation& pending = pending_[self.id];
+  pending = operation;
+  clock_.pass(point_cost);
+  ++points_;
+  if (in_fair_tail()) [[unlikely]]
+    pass_fair_tail(self, pending);
+  if (listener_ != nullptr) [[unlikely]]
+    listener_->arrives(self, pending);
+  if (clock_.next_deadline() <= clock_.now()) wake_due();
+  if (world_.faults().crash_is_possible()) [[unlikely]] {
+    world_.faults().choose_crash();
+    if (self.state == Task::State::killed) leave_killed();
+  }
+  const bool give_way = gives_way(self, operation);
+  if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
+  if (runnable_count_ > 1) {
+    // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
+    const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
+    if (cpu_ != Cpu::many && pending.kind == OperationKind::yield) self.ready_since = ready_ever_++;
+    const auto options = candidates(from);
+    const TaskId next =
+        options.size() == 1 ? static_cast<TaskId>(options[0]) : choose_task(options, self.id, give_way);
+    if (next != self.id) switch_to(*tasks_[next]);
+  }
+  mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(pending.kind)} << 40U |
+      std::uint64_t{pending.bytes} << 32U | (pending.object == 0 ? 0 : pending.offset));
+  mix(std::uint64_t{pending.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
+  if (strategy_follows_steps_) strategy_->performs(self.id, pending);
+  if (listener_ != nullptr) [[unlikely]]
+    listener_->performs(self, pending);
+  if (fetches_are_watched_) [[unlikely]]
+    world_.fetches().performs(self, pending);
+}
+
 Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
   Task& self = *running_;
   self.state = Task::State::blocked;
@@ -220,8 +233,11 @@ Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
     listener_->blocks(self);
   if (deadline.on_wall_clock) [[unlikely]]
     world_.choose_clock_step();
+  const std::uint64_t bit = std::uint64_t{1} << (self.id % 64);
+  under_way_[self.id / 64] |= bit;
   Task* const next = next_after_stop();
   if (next != &self) switch_to(*next);
+  under_way_[self.id / 64] &= ~bit;
   return self.timed_out ? Wake::timed_out : Wake::signalled;
 }
 
@@ -360,7 +376,8 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
   return static_cast<TaskId>(options[strategy_->choose_task({.options = options,
                                                              .running = running,
                                                              .running_gives_way = running_gives_way,
-                                                             .pending = pending_})]);
+                                                             .pending = pending_,
+                                                             .under_way = under_way_})]);
 }
 
 SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
@@ -374,7 +391,8 @@ SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
                                 .running = running_->id,
                                 .running_can_be_held_up = running_can_be_held_up,
                                 .runnable = runnable_,
-                                .pending = pending_});
+                                .pending = pending_,
+                                .under_way = under_way_});
     if (moment.duration == SimTime{0}) return {};
     if (moment.others_go_on) return moment;
     clock_.pass(moment.duration);
@@ -397,17 +415,8 @@ void Scheduler::choose_slow_moment() noexcept {
   if (listener_ != nullptr) listener_->goes_on(self);
 }
 
-std::span<const std::uint64_t> Scheduler::runnable_tasks(TaskId from) noexcept {
+std::span<const std::uint64_t> Scheduler::many_runnable_tasks(TaskId from) noexcept {
   std::size_t count = 0;
-  if (runnable_count_ == 2 && tasks_count_ <= 64) {
-    // The most common case, without loops that end differently each time.
-    const std::uint64_t low = static_cast<std::uint64_t>(std::countr_zero(runnable_[0]));
-    const std::uint64_t high = 63 - static_cast<std::uint64_t>(std::countl_zero(runnable_[0]));
-    const bool low_is_first = low >= from || high < from;
-    options_[0] = low_is_first ? low : high;
-    options_[1] = low_is_first ? high : low;
-    return std::span{options_}.first(2);
-  }
   const auto append = [&](std::size_t word, std::uint64_t mask) {
     for (std::uint64_t bits = runnable_[word] & mask; bits != 0; bits &= bits - 1) {
       options_[count++] = word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));

@@ -50,7 +50,10 @@ class Scheduler {
   /// The task starts to run when the strategy first chooses it.
   /// @param name  unique within the process
   Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
-  void set_points_max(std::uint64_t points) noexcept { points_max_ = points; }
+  void set_points_max(std::uint64_t points) noexcept {
+    points_max_ = points;
+    fair_tail_begin_ = points / 2;
+  }
   void set_cpu(Cpu cpu) noexcept { cpu_ = cpu; }
   [[nodiscard]] Cpu cpu() const noexcept { return cpu_; }
   /// Called, outside the simulated world, each time that every task waits of its own accord, before time
@@ -112,6 +115,8 @@ class Scheduler {
 
   /// Time was looked at: from now on it matters when it passes.
   void clock_was_read() noexcept { clock_was_read_ = true; }
+  /// Whether anybody has looked at time or waited for it in this execution.
+  [[nodiscard]] bool time_has_mattered() const noexcept { return clock_was_read_ || clock_.any_armed_ever(); }
 
   // --- failing ---
 
@@ -133,6 +138,7 @@ class Scheduler {
   [[nodiscard]] StepListener* listener() noexcept { return listener_; }
 
  private:
+  void set_name(Task& task, ProcessId process, std::string_view name);
   static void run_task(void* task) noexcept;
   void finish_running() noexcept;
   /// Goes from the running task, which will not run again, to the next, or back to run().
@@ -146,10 +152,10 @@ class Scheduler {
   /// @return a slow moment of the running task alone that is to follow; duration 0: none
   SlowMoment let_time_pass(bool running_can_be_held_up) noexcept;
   /// Whether the task waits for others, though it can run.
-  [[nodiscard]] static bool gives_way(Task& task, const Operation& operation) noexcept;
+  [[nodiscard]] static bool gives_way(Task& task, Operation operation) noexcept;
   /// An execution that will not end is given a fair end: tasks take turns, time and faults stand still. What
   /// does not end then is a livelock, and not the strategy's doing.
-  [[nodiscard]] bool in_fair_tail() const noexcept { return points_ > points_max_ / 2; }
+  [[nodiscard]] bool in_fair_tail() const noexcept { return points_ > fair_tail_begin_; }
   /// Those of `options` that one processor would run next, in place.
   std::span<const std::uint64_t> keep_highest_priority(std::span<const std::uint64_t> options) noexcept;
   /// Those that may run next.
@@ -158,7 +164,17 @@ class Scheduler {
     return cpu_ == Cpu::many ? options : keep_highest_priority(options);
   }
   /// Runnable tasks in the order of their numbers, from `from` on and then around.
-  std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept;
+  std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept {
+    if (runnable_count_ != 2 || tasks_count_ > 64) return many_runnable_tasks(from);
+    // The most common case, without loops that end differently each time.
+    const std::uint64_t low = static_cast<std::uint64_t>(std::countr_zero(runnable_[0]));
+    const std::uint64_t high = 63 - static_cast<std::uint64_t>(std::countl_zero(runnable_[0]));
+    const bool low_is_first = low >= from || high < from;
+    options_[0] = low_is_first ? low : high;
+    options_[1] = low_is_first ? high : low;
+    return std::span{options_}.first(2);
+  }
+  std::span<const std::uint64_t> many_runnable_tasks(TaskId from) noexcept;
   /// Of two that wait for the same: the longer waiting one; on one processor the one with the higher priority.
   [[nodiscard]] bool goes_before(const Task& one, const Task& other) const noexcept {
     if (cpu_ != Cpu::many && one.effective_priority != other.effective_priority)
@@ -181,7 +197,8 @@ class Scheduler {
   Context main_context_;
   VirtualClock clock_;
 
-  std::array<std::uint64_t, tasks_max / 64> runnable_{};  // bit = task number
+  std::array<std::uint64_t, tasks_max / 64> runnable_{};   // bit = task number
+  std::array<std::uint64_t, tasks_max / 64> under_way_{};  // those that block() has not returned to
   std::size_t runnable_count_ = 0;
   std::size_t stalled_count_ = 0;
   std::array<std::uint64_t, tasks_max> options_{};
@@ -193,6 +210,7 @@ class Scheduler {
 
   std::uint64_t points_ = 0;
   std::uint64_t points_max_ = points_max_default;
+  std::uint64_t fair_tail_begin_ = points_max_default / 2;
   std::uint64_t decisions_ = 0;
   std::uint64_t blocked_ever_ = 0;
   std::uint64_t hash_ = 0;

@@ -55,7 +55,7 @@ Segments::~Segments() {
 }
 
 void Segments::reset() noexcept {
-  for (std::size_t process = 0; process < processes_max; ++process) {
+  for (std::size_t process = 0; process < world_.processes_count(); ++process) {
     const std::size_t first = process * segments_max * mappings_max;
     for (std::size_t i = 0; i < segments_count_ * mappings_max; ++i) windows_[first + i].mapped = false;
   }

@@ -1,5 +1,5 @@
 // The smallest handoff that uses what every handoff uses, unmodified: a Boost.Interprocess segment, mapped by
-// two processes at different addresses, and two named semaphores. One request, one answer.
+// two processes at different addresses, and two named semaphores.
 
 #include <atomic>
 #include <cstdint>
@@ -60,4 +60,19 @@ SCENARIO("bench/handoff", "one request and its answer over a segment and two sem
   world.process("emulator").start("main", [] { Handoff{}.serve(); });
   world.run();
   world.require(answer == 8, "the answer belongs to the request");
+}
+
+SCENARIO("bench/hundred-handoffs", "a hundred requests and their answers, one after the other") {
+  constexpr std::uint32_t requests_count = 100;
+  std::uint32_t answered_count = 0;
+  world.process("kernel").start("main", [&] {
+    Handoff handoff;
+    for (std::uint32_t i = 0; i < requests_count; ++i) answered_count += handoff.call(i) == i + 1 ? 1 : 0;
+  });
+  world.process("emulator").start("main", [] {
+    Handoff handoff;
+    for (std::uint32_t i = 0; i < requests_count; ++i) handoff.serve();
+  });
+  world.run();
+  world.require(answered_count == requests_count, "each answer belongs to its request");
 }

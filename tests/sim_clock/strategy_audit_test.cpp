@@ -47,7 +47,8 @@ class ToyProgram {
       if (options.empty()) return steps;
       std::size_t chosen = 0;
       if (options.size() > 1)
-        chosen = strategy.choose_task({.options = options, .running = running, .pending = pending_});
+        chosen = strategy.choose_task(
+            {.options = options, .running = running, .pending = pending_, .under_way = {}});
       running = static_cast<TaskId>(options.at(chosen));
       strategy.performs(running, pending_[running]);
       --left[running];
@@ -246,7 +247,8 @@ TEST(StallAudit, a_silence_is_as_often_of_one_order_of_magnitude_as_of_another) 
     std::size_t longest = 0;
     for (std::size_t at = 0; at < steps.size();) {
       const std::size_t end = std::min(steps.find_first_not_of(steps[at], at), steps.size());
-      if (end < steps.size()) longest = std::max(longest, end - at);  // the last run is what was left
+      // A run up to the end of its task may have been cut short by that.
+      if (steps.find(steps[at], end) != std::string::npos) longest = std::max(longest, end - at);
       at = end;
     }
     const std::size_t order = std::bit_width(longest) - std::size_t{1};
@@ -271,7 +273,7 @@ std::vector<double> slow_moments(SimTime until_next_timer, std::size_t orders, S
     strategy.begin_execution(seed_of(execution));
     for (int i = 0; i < 10'000; ++i) {
       const SlowMoment moment = strategy.slow_moment(
-          {.until_next_timer = until_next_timer, .runnable = runnable, .pending = pending});
+          {.until_next_timer = until_next_timer, .runnable = runnable, .pending = pending, .under_way = {}});
       const bool is_multiple =
           until_next_timer == VirtualClock::never || moment.duration % unit == SimTime{0};
       if (moment.duration == SimTime{0} || !is_multiple) continue;
@@ -310,7 +312,7 @@ TEST(Swarm, gives_every_member_its_turn_also_when_one_yields_all) {
     ++follows[strategy.follows_steps()];  // random alone does not
     strategy.learn({.new_states = strategy.follows_steps() ? 10U : 0U});
   }
-  EXPECT_GE(follows[false], 2'000 / 16);
+  EXPECT_GE(follows[false], 2'000 * 3 / 4 / 20);  // its share of the cycle
   EXPECT_GE(follows[true], 1'000);
 }
 

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cctype>
 #include <cerrno>
+#include <cfenv>
 #include <cstdlib>
 #include <memory>
 #include <set>
@@ -44,6 +45,26 @@ TEST_F(TasksTest, thread_locals_are_each_tasks_own_and_fresh_in_each_execution) 
   });
   EXPECT_EQ(outcome, Outcome{});
   EXPECT_EQ(own_number, 42);
+}
+
+TEST_F(TasksTest, floating_point_rounding_and_exception_flags_are_each_tasks_own) {
+  const Outcome outcome = run_randomly(50, [](World& world) {
+    for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD}) {
+      world.process("p").start(std::to_string(rounding), [&world, rounding] {
+        fesetround(rounding);
+        feclearexcept(FE_ALL_EXCEPT);
+        const int raised = rounding == FE_UPWARD ? FE_OVERFLOW : 0;
+        feraiseexcept(raised);
+        for (int i = 0; i < 5; ++i) {
+          sched_yield();
+          world.require(fegetround() == rounding, "rounding kept");
+          world.require(fetestexcept(FE_OVERFLOW) == raised, "flags kept");
+        }
+      });
+    }
+  });
+  EXPECT_EQ(outcome, Outcome{});
+  EXPECT_EQ(fegetround(), FE_TONEAREST);
 }
 
 TEST_F(TasksTest, errno_is_each_tasks_own) {
