@@ -27,9 +27,8 @@ class Occasions {
     places_count_ = places_count;
     for (std::size_t i = 0; i < places_count; ++i) {
       const bool log_uniform = generator.below(4) == 0;
-      const auto bound =
-          log_uniform ? std::uint32_t{1} << generator.below(order_of_magnitude() + 1) : estimate_;
-      places_[i] = generator.below(std::max(bound, 1U));
+      places_[i] = generator.below(log_uniform ? std::uint32_t{1} << generator.below(order_of_magnitude() + 1)
+                                               : estimate());
     }
     std::sort(places_.begin(), places_.begin() + static_cast<std::ptrdiff_t>(places_count));
     next_ = 0;
@@ -52,26 +51,26 @@ class Occasions {
   /// @param seen_all  false: there may have been more occasions than were passed, so the estimate is not lowered
   void learn(bool seen_all = true) noexcept {
     constexpr std::uint64_t most = std::uint64_t{1} << 30U;
-    const auto seen = static_cast<std::uint32_t>(std::min(passed_, most));
-    estimate_ = std::max({seen,
-                          !is_learned_ ? 0
-                          : seen_all   ? estimate_ - (estimate_ + 15) / 16
-                                       : estimate_,
-                          1U});
+    const std::uint64_t seen = std::clamp(passed_, std::uint64_t{1}, most) * parts;
+    const std::uint64_t kept = seen_all ? parts_estimated_ - parts_estimated_ / parts : parts_estimated_;
+    parts_estimated_ = is_learned_ ? std::max(seen, kept) : seen;
     is_learned_ = true;
   }
 
-  /// Occasions to expect in an execution.
-  [[nodiscard]] std::uint32_t estimate() const noexcept { return estimate_; }
+  /// Occasions to expect in an execution, at least 1.
+  [[nodiscard]] std::uint32_t estimate() const noexcept {
+    return static_cast<std::uint32_t>((parts_estimated_ + parts - 1) / parts);
+  }
 
  private:
   [[nodiscard]] std::uint32_t order_of_magnitude() const noexcept {
-    return static_cast<std::uint32_t>(std::bit_width(estimate_)) - 1;
+    return static_cast<std::uint32_t>(std::bit_width(estimate())) - 1;
   }
 
+  static constexpr std::uint64_t parts = 16;  // of an occasion: so that small numbers, too, fall slowly
   static constexpr std::uint32_t first_estimate = 64;
 
-  std::uint32_t estimate_ = first_estimate;
+  std::uint64_t parts_estimated_ = first_estimate * parts;
   bool is_learned_ = false;
   std::uint64_t passed_ = 0;
   std::array<std::uint64_t, places_max> places_{};

@@ -1,6 +1,7 @@
 #include "sim_clock/explore/sampling_strategy.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace ltsim {
 namespace {
@@ -16,21 +17,21 @@ void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   experience_->period = experience_->period_learned;
   experience_->things.begin();
   all_matters_ = generator_.below(4) == 0;
-  time_mode_ = begin();
   clock_turns_left_ = std::uint32_t{8} << generator_.below(8);
+  time_mode_ = begin();
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
   slow_moments().begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
-  for (Occasions& fault : experience_->faults)
-    fault.begin(generator_, generator_.below(4) == 0 ? 0 : 1 + generator_.below(2));
+  faults_asked_for_ = 0;
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
   experience_->period_learned = experience_->period;
   experience_->things.learn();
   if (slow_moments().passed() != 0) slow_moments().learn();
-  for (Occasions& fault : experience_->faults) {
+  for (std::uint32_t kinds = faults_asked_for_; kinds != 0; kinds &= kinds - 1) {
     // A fault that has struck as often as it may is not asked for any more.
-    if (fault.passed() != 0) fault.learn(!fault.any_hit());
+    Occasions& fault = experience_->faults[static_cast<std::size_t>(std::countr_zero(kinds))];
+    fault.learn(!fault.any_hit());
   }
 }
 
@@ -54,9 +55,9 @@ SlowMoment SamplingStrategy::slow_moment(const SlowMomentChoice& choice) noexcep
 }
 
 SamplingStrategy::TimeMode SamplingStrategy::draw_time_mode() noexcept {
-  const std::uint32_t drawn = generator_.below(8);
+  const std::uint32_t drawn = generator_.below(16);
   if (drawn == 0) return TimeMode::bursts;
-  return drawn < 4 ? TimeMode::silence : TimeMode::clock;
+  return drawn < 6 ? TimeMode::silence : TimeMode::clock;
 }
 
 SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
@@ -86,7 +87,13 @@ bool SamplingStrategy::matters(const Operation& operation) noexcept {
 }
 
 std::size_t SamplingStrategy::strike(FaultKind kind, std::size_t variants_count) noexcept {
-  if (experience_->faults[static_cast<std::size_t>(kind)].pass() == 0) return 0;
+  Occasions& fault = experience_->faults[static_cast<std::size_t>(kind)];
+  const std::uint32_t bit = std::uint32_t{1} << static_cast<unsigned>(kind);
+  if ((faults_asked_for_ & bit) == 0) {
+    faults_asked_for_ |= bit;
+    fault.begin(generator_, generator_.below(4) == 0 ? 0 : 1 + generator_.below(2));
+  }
+  if (fault.pass() == 0) return 0;
   return 1 + generator_.below(static_cast<std::uint32_t>(variants_count));
 }
 

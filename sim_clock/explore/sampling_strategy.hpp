@@ -56,8 +56,10 @@ class SamplingStrategy : public Strategy {
 
   /// Draws what the kind of strategy needs for an execution. @return how time passes in it
   virtual TimeMode begin() noexcept = 0;
-  /// Each of the three: the clock in every second execution, bursts in one of eight.
+  /// Each of the three: the clock in five executions of eight, bursts in one of sixteen.
   [[nodiscard]] TimeMode draw_time_mode() noexcept;
+  /// For begin(): the clock goes first at most so often in this execution.
+  void limit_clock_turns(std::uint32_t turns) noexcept { clock_turns_left_ = turns; }
   /// In time mode `clock`, with a timer armed: whether time goes on to the next timer before anybody runs.
   [[nodiscard]] virtual bool clock_goes_first(const SlowMomentChoice& /*choice*/) noexcept { return false; }
 
@@ -82,7 +84,8 @@ class SamplingStrategy : public Strategy {
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
   std::uint32_t clock_turns_left_ = 0;
-  unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
+  unsigned burst_bits_ = 1;             // mode `bursts`: a slow moment has the probability 2^-bits
+  std::uint32_t faults_asked_for_ = 0;  // in this execution; a bit for each kind, whose places are drawn then
   Experience own_experience_;
   Experience* experience_ = &own_experience_;
   bool all_matters_ = false;

@@ -9,8 +9,9 @@ void SwarmStrategy::begin_execution(std::uint64_t seed) noexcept {
   // Not the generator of the member: what it draws must not depend on how it was drawn itself.
   RandomGenerator generator{splitmix64(seed)};
   const std::uint32_t yields = std::accumulate(yields_.begin(), yields_.end(), std::uint32_t{0});
-  if (yields == 0 || executions_ % 2 == 0) {
-    drawn_ = cycle[(yields == 0 ? executions_ : executions_ / 2) % cycle.size()];
+  by_cycle_ = yields == 0 || executions_ % 4 != 3;
+  if (by_cycle_) {
+    drawn_ = cycle[cycle_executions_ % cycle.size()];
   } else {
     std::uint32_t place = generator.below(yields);
     for (drawn_ = 0; place >= yields_[drawn_]; ++drawn_) place -= yields_[drawn_];
@@ -21,6 +22,7 @@ void SwarmStrategy::begin_execution(std::uint64_t seed) noexcept {
 
 void SwarmStrategy::learn(const ExecutionSummary& summary) noexcept {
   ++executions_;
+  if (by_cycle_) ++cycle_executions_;
   current_->learn(summary);
   constexpr std::uint32_t worth_of_a_failure = 4096;
   constexpr std::uint64_t most_at_once = 1024;

@@ -2,8 +2,8 @@
 // what yields something new is drawn more often.
 //
 // No strategy wins everywhere: what the partial order sampler finds at once, a random walk with a silence never
-// does, and the other way round. Every second execution follows a fixed cycle, so that none is ever given up; the
-// others are drawn in proportion to what each strategy has yielded of late: new abstract states, new reads-from
+// does, and the other way round. Three executions of four follow a fixed cycle, so that none is ever given up; the
+// fourth is drawn in proportion to what each strategy has yielded of late: new abstract states, new reads-from
 // pairs, and above all failures of a new kind. Shares of the cycle: measured over the known races, see
 // tests/bench/strategies_bench.cpp. Each strategy draws its own parameters, and which faults are on at all, for
 // each execution.
@@ -54,10 +54,13 @@ class SwarmStrategy final : public Strategy {
   SurwStrategy surw_;
   StallStrategy stall_;
   std::array<SamplingStrategy*, members_count> members_{&random_, &pct_, &pos_, &surw_, &stall_};
-  static constexpr std::array<Member, 16> cycle{pos,  surw, random, surw, pct,   pos,  surw, pos,
-                                                surw, pos,  random, surw, stall, surw, pct,  pos};
+  static constexpr std::array<Member, 20> cycle{pos,   surw, pct,  pos, surw, pos,  surw,
+                                                stall, pos,  surw, pct, pos,  surw, random,
+                                                pos,   surw, pct,  pos, surw, stall};
   std::uint64_t executions_ = 0;                       // that count
+  std::uint64_t cycle_executions_ = 0;                 // of these, by the cycle
   std::array<std::uint32_t, members_count> yields_{};  // of late
+  bool by_cycle_ = true;                               // this execution
   std::size_t drawn_ = 0;
   SamplingStrategy* current_ = &random_;
 };
