@@ -22,6 +22,8 @@ std::string_view to_string(FaultKind kind) noexcept {
       return "foreign-write";
     case FaultKind::call_failure:
       return "call-failure";
+    case FaultKind::process_stall:
+      return "process-stall";
   }
   return "?";
 }

@@ -18,9 +18,10 @@ enum class FaultKind : std::uint8_t {
   bit_flip,       ///< one bit of a segment changes
   foreign_write,  ///< somebody who has no business there writes into a segment
   call_failure,   ///< shm_open, ftruncate or mmap fails
+  process_stall,  ///< a process gets no processor for a while, with all its tasks
 };
 
-inline constexpr std::size_t fault_kinds_count = static_cast<std::size_t>(FaultKind::call_failure) + 1;
+inline constexpr std::size_t fault_kinds_count = static_cast<std::size_t>(FaultKind::process_stall) + 1;
 
 [[nodiscard]] std::string_view to_string(FaultKind kind) noexcept;
 

@@ -9,11 +9,19 @@ namespace ltsim {
 void Faults::reset() noexcept {
   left_.fill(0);
   crashes_.fill({.times = 0, .restart_after = {}});
+  stalls_left_.fill(0);
+  stall_candidates_count_ = 0;
 }
 
 void Faults::grant_crashes(ProcessId process, CrashGrant grant) noexcept {
   left(FaultKind::crash) += grant.times;
   crashes_[process] = {.times = crashes_[process].times + grant.times, .restart_after = grant.restart_after};
+}
+
+void Faults::grant_stalls(ProcessId process, unsigned times) noexcept {
+  left(FaultKind::process_stall) += times;
+  if (stalls_left_[process] == 0) stall_candidates_[stall_candidates_count_++] = process;
+  stalls_left_[process] += times;
 }
 
 std::size_t Faults::ask(FaultKind kind, std::size_t variants_count) noexcept {
@@ -40,6 +48,21 @@ void Faults::choose_crash() noexcept {
   if (count == 0) return;
   const std::size_t variant = world_.scheduler().strike(FaultKind::crash, count);
   if (variant != 0) crash(crash_candidate(variant));
+}
+
+void Faults::choose_stall() noexcept {
+  using namespace std::chrono_literals;
+  constexpr std::array<SimTime, 5> durations{1ms, 10ms, 100ms, 1s, 10s};
+  const std::size_t variant = strike(FaultKind::process_stall, stall_candidates_count_ * durations.size());
+  if (variant == 0) return;
+  const ProcessId id = stall_candidates_[(variant - 1) / durations.size()];
+  if (stalls_left_[id] == 0) return;  // the grant of another process was meant to be left
+  --stalls_left_[id];
+  const SimTime duration = durations[(variant - 1) % durations.size()];
+  world_.note([&] {
+    return fmt::format("{} gets no processor for {} ms", world_.process(id).name(), duration / 1ms);
+  });
+  world_.scheduler().stall_process(id, duration);
 }
 
 void Faults::crash(ProcessId id) {

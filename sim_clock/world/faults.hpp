@@ -38,6 +38,7 @@ class Faults {
   /// Process::may_crash().
   void grant(FaultKind kind, unsigned times) noexcept { left(kind) += times; }
   void grant_crashes(ProcessId process, CrashGrant grant) noexcept;
+  void grant_stalls(ProcessId process, unsigned times) noexcept;
 
   /// Whether the fault strikes at this place, in one of so many ways.
   /// @param variants_count  >= 1
@@ -53,10 +54,16 @@ class Faults {
     return left_[static_cast<std::size_t>(kind)] != 0;
   }
   [[nodiscard]] bool crash_is_possible() const noexcept { return can_strike(FaultKind::crash); }
+  /// Whether something that strikes at any scheduling point is granted.
+  [[nodiscard]] bool any_at_each_point() const noexcept {
+    return crash_is_possible() || can_strike(FaultKind::process_stall);
+  }
   /// Before any task runs: the bodies of processes that may start again are copied.
   void prepare_restarts();
   /// Asks whether one of the processes that run is killed here, and kills it.
   void choose_crash() noexcept;
+  /// Asks whether one of the processes gets no processor for a while, beginning here.
+  void choose_stall() noexcept;
   /// While the strategy is asked for a crash: the process that a variant would kill.
   /// @param variant  1 to variants_count
   [[nodiscard]] ProcessId crash_candidate(std::size_t variant) const noexcept {
@@ -72,6 +79,10 @@ class Faults {
   std::array<std::uint32_t, fault_kinds_count> left_{};  // of crashes: the sum over all processes
   std::array<CrashGrant, processes_max> crashes_{};      // by process; `times` is what is left
   std::array<ProcessId, processes_max> crash_candidates_{};
+  std::array<std::uint32_t, processes_max> stalls_left_{};  // by process
+  /// Those with a grant, whether or not it is used up: which variant means which process never changes.
+  std::array<ProcessId, processes_max> stall_candidates_{};
+  std::size_t stall_candidates_count_ = 0;
 };
 
 }  // namespace ltsim

@@ -10,6 +10,7 @@
 
 #include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/explore/task_set.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -37,6 +38,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   tasks_count_ = 0;
   unfinished_count_ = 0;
   unfinished_in_.fill(0);
+  no_processor_before_.fill(SimTime{0});
   points_ = 0;
   set_points_max(points_max_default);
   decisions_ = 0;
@@ -194,11 +196,15 @@ void Scheduler::point(Operation operation) noexcept {
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, pending);
   if (clock_.next_deadline() <= clock_.now()) wake_due();
-  if (world_.faults().crash_is_possible()) [[unlikely]] {
-    world_.faults().choose_crash();
+  if (world_.faults().any_at_each_point()) [[unlikely]] {
+    if (world_.faults().crash_is_possible()) world_.faults().choose_crash();
     if (self.state == Task::State::killed) leave_killed();
+    if (world_.faults().can_strike(FaultKind::process_stall)) world_.faults().choose_stall();
+    wait_for_processor();
   }
   const bool give_way = gives_way(self, operation);
+  if (in_fair_tail() && give_way) [[unlikely]]
+    skip_time_if_all_give_way();
   if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
   if (runnable_count_ > 1) {
     // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
@@ -293,10 +299,29 @@ void Scheduler::kill_tasks(ProcessId process) noexcept {
     --unfinished_count_;
     --unfinished_in_[process];
   }
+  no_processor_before_[process] = SimTime{0};  // what is started again is another process
   // Only now: a task of this process must not be woken.
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     if (tasks_[i]->process == process) world_.mutexes().owner_died(tasks_[i]->id);
   }
+}
+
+void Scheduler::stall_process(ProcessId process, SimTime duration) noexcept {
+  const SimTime end = clock_.now() + duration;
+  no_processor_before_[process] = std::max(no_processor_before_[process], end);
+  for (std::size_t i = 0; i < tasks_count_; ++i) {
+    Task& task = *tasks_[i];
+    if (task.process != process || task.state != Task::State::runnable) continue;
+    make_unrunnable(task);
+    make_runnable(task);  // when the stall is over; so will those be that something wakes meanwhile
+  }
+}
+
+void Scheduler::wait_for_processor() noexcept {
+  Task& self = *running_;
+  if (self.state != Task::State::stalled) return;
+  Task* const other = next_after_stop();
+  if (other != &self) switch_to(*other);
 }
 
 void Scheduler::leave_killed() noexcept {
@@ -452,6 +477,12 @@ void Scheduler::wake_due() noexcept {
 }
 
 void Scheduler::make_runnable(Task& task) noexcept {
+  if (clock_.now() < no_processor_before_[task.process]) [[unlikely]] {
+    task.state = Task::State::stalled;
+    ++stalled_count_;
+    clock_.arm(no_processor_before_[task.process], task.id);
+    return;
+  }
   task.state = Task::State::runnable;
   task.ready_since = ready_ever_++;
   runnable_[task.id / 64] |= std::uint64_t{1} << (task.id % 64);
@@ -461,6 +492,18 @@ void Scheduler::make_runnable(Task& task) noexcept {
 void Scheduler::make_unrunnable(const Task& task) noexcept {
   runnable_[task.id / 64] &= ~(std::uint64_t{1} << (task.id % 64));
   --runnable_count_;
+}
+
+void Scheduler::skip_time_if_all_give_way() noexcept {
+  if (!clock_.any_armed()) return;
+  bool all = true;
+  for_each_task(runnable_, [&](TaskId id) {
+    all = all &&
+          (pending_[id].kind == OperationKind::yield || tasks_[id]->looks_count >= looks_before_giving_way);
+  });
+  if (!all) return;
+  clock_.pass(std::max(clock_.next_deadline() - clock_.now(), SimTime{0}));
+  wake_due();
 }
 
 void Scheduler::pass_fair_tail(Task& task, const Operation& operation) noexcept {

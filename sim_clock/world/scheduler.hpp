@@ -73,6 +73,11 @@ class Scheduler {
   /// Stops every task of the process where it stands, for good, without unwinding anything. If the running
   /// task is among them, it runs on until it calls leave_killed().
   void kill_tasks(ProcessId process) noexcept;
+  /// No task of the process gets a processor for so long. If the running task is among them, it runs on until it calls
+  /// wait_for_processor().
+  void stall_process(ProcessId process, SimTime duration) noexcept;
+  /// For a running task: somebody else goes on while it is stalled.
+  void wait_for_processor() noexcept;
   /// For a running task that was killed: somebody else goes on. Does not return.
   [[noreturn]] void leave_killed() noexcept;
   /// The wall clock was set forward by so much: waits that end by it end so much sooner.
@@ -153,8 +158,8 @@ class Scheduler {
   SlowMoment let_time_pass(bool running_can_be_held_up) noexcept;
   /// Whether the task waits for others, though it can run.
   [[nodiscard]] static bool gives_way(Task& task, Operation operation) noexcept;
-  /// An execution that will not end is given a fair end: tasks take turns, time and faults stand still. What
-  /// does not end then is a livelock, and not the strategy's doing.
+  /// An execution that will not end is given a fair end: tasks take turns, nobody is slow, no fault strikes. What does
+  /// not end then is a livelock, and not the strategy's doing.
   [[nodiscard]] bool in_fair_tail() const noexcept { return points_ > fair_tail_begin_; }
   /// Those of `options` that one processor would run next, in place.
   std::span<const std::uint64_t> keep_highest_priority(std::span<const std::uint64_t> options) noexcept;
@@ -185,6 +190,9 @@ class Scheduler {
   void wake_due() noexcept;
   void make_runnable(Task& task) noexcept;
   void make_unrunnable(const Task& task) noexcept;
+  /// In the fair tail: where all who could run wait for others, and somebody sleeps or is held up, that time passes. It
+  /// may be longer than the tail, at so much a point.
+  void skip_time_if_all_give_way() noexcept;
   /// Notes what the task does in the fair tail, and ends the execution where that has lasted long enough.
   void pass_fair_tail(Task& task, const Operation& operation) noexcept;
 
@@ -207,6 +215,7 @@ class Scheduler {
   std::size_t tasks_count_ = 0;
   std::size_t unfinished_count_ = 0;
   std::array<std::uint16_t, processes_max> unfinished_in_{};  // by process
+  std::array<SimTime, processes_max> no_processor_before_{};  // by process
 
   std::uint64_t points_ = 0;
   std::uint64_t points_max_ = points_max_default;

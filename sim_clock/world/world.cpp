@@ -20,6 +20,8 @@ void Process::start(std::string_view name, std::function<void()> body) {
 
 void Process::may_crash(CrashGrant grant) { world_.faults().grant_crashes(id_, grant); }
 
+void Process::may_stall(unsigned times) { world_.faults().grant_stalls(id_, times); }
+
 bool Process::is_running() const noexcept {
   return world_.scheduler().has_unfinished_tasks(id_) && world_.now() >= begin_;
 }
@@ -173,9 +175,11 @@ void World::unsupported(std::string what) {
 }
 
 void World::grant(FaultKind kind, unsigned times) {
-  if (kind == FaultKind::crash || kind == FaultKind::bit_flip || kind == FaultKind::foreign_write) {
-    unsupported(fmt::format("{} is not granted to a whole world: see Process::may_crash and World::grant_in",
-                            to_string(kind)));
+  if (kind == FaultKind::crash || kind == FaultKind::process_stall || kind == FaultKind::bit_flip ||
+      kind == FaultKind::foreign_write) {
+    unsupported(fmt::format(
+        "{} is not granted to a whole world: see Process::may_crash, Process::may_stall and World::grant_in",
+        to_string(kind)));
     return;
   }
   faults_.grant(kind, times);

@@ -54,6 +54,9 @@ class Process {
   /// tasks: "process@2/name". The bodies are copies made before the first run: what they capture by reference
   /// is not fresh then.
   void may_crash(CrashGrant grant);
+  /// Grants stalls: at any scheduling point of the world the process, with all its tasks, may get no processor for 1 ms
+  /// to 10 s, up to `times` times in an execution.
+  void may_stall(unsigned times);
   /// Which life this is, from 1. Between a crash and the restart already the one to come.
   [[nodiscard]] unsigned incarnation() const noexcept { return incarnation_; }
   /// How often it was killed in this execution.

@@ -148,6 +148,21 @@ TEST_F(NoProgressTest, a_livelock_names_who_polls_what_and_who_waits_for_them) {
   }
 }
 
+TEST_F(NoProgressTest, who_polls_for_one_that_sleeps_longer_than_the_execution_has_points_is_no_livelock) {
+  const Outcome outcome = run([](World& world) {
+    world.set_points_max(1000);
+    const auto flag = std::make_shared<std::atomic<int>>(0);
+    world.process("p").start("polls", [flag] {
+      while (flag->load() == 0) sched_yield();
+    });
+    world.process("p").start("sleeps", [flag] {
+      std::this_thread::sleep_for(1s);
+      flag->store(1);
+    });
+  });
+  EXPECT_EQ(outcome, Outcome{});
+}
+
 // --- locks held at the end ---
 
 TEST_F(NoProgressTest, a_lock_that_its_owner_never_gives_back_is_a_leak) {

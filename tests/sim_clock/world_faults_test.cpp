@@ -485,8 +485,9 @@ TEST_F(FaultsTest, a_segment_and_a_semaphore_of_a_former_life_are_found_as_they_
 }
 
 TEST_F(FaultsTest, what_cannot_be_granted_so_or_left_over_is_refused) {
-  const std::array<void (*)(World&), 6> mistakes{
+  const std::array<void (*)(World&), 7> mistakes{
       [](World& world) { world.grant(FaultKind::crash, 1); },
+      [](World& world) { world.grant(FaultKind::process_stall, 1); },
       [](World& world) { world.grant(FaultKind::bit_flip, 1); },
       [](World& world) { world.grant_in(FaultKind::lost_post, "segment", 0, 4, 1); },
       [](World& world) { world.leave_segment("a/b", {}); },
@@ -542,6 +543,7 @@ void pass_every_place_with_all_faults(World& world) {
     world.grant_in(kind, "segment", 0, 16, 1);
   for (const char* const name : {"one", "two"})
     world.process(name).may_crash({.times = 1, .restart_after = 1ms});
+  world.process("two").may_stall(1);
   pass_every_place(world);
 }
 
