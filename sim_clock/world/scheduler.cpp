@@ -48,7 +48,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   has_run_ = false;
   cpu_ = Cpu::many;
   ready_ever_ = 0;
-  fetches_are_watched_ = false;
+  steps_are_checked_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -221,8 +221,8 @@ void Scheduler::point(Operation operation) noexcept {
   if (strategy_follows_steps_) strategy_->performs(self.id, pending);
   if (listener_ != nullptr) [[unlikely]]
     listener_->performs(self, pending);
-  if (fetches_are_watched_) [[unlikely]]
-    world_.fetches().performs(self, pending);
+  if (steps_are_checked_) [[unlikely]]
+    world_.check_step(self, pending);
 }
 
 Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {

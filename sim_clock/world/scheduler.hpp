@@ -100,8 +100,8 @@ class Scheduler {
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
 
-  /// From now on, in this execution, World::single_fetch() is told each step.
-  void watch_fetches() noexcept { fetches_are_watched_ = true; }
+  /// From now on, in this execution, World::check_step() is told each step.
+  void check_steps() noexcept { steps_are_checked_ = true; }
 
   // --- priorities; they matter on Cpu::one_fifo only (one_fifo.cpp) ---
 
@@ -228,7 +228,7 @@ class Scheduler {
   bool strategy_follows_steps_ = false;
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;
-  bool fetches_are_watched_ = false;
+  bool steps_are_checked_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

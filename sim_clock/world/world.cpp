@@ -166,6 +166,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   faults_.reset();
   damages_.reset();
   fetches_.reset();
+  written_first_.reset();
   processes_count_ = 0;
 }
 

@@ -27,6 +27,7 @@
 #include "sim_clock/check/memory_checks.hpp"
 #include "sim_clock/check/outcome.hpp"
 #include "sim_clock/check/single_fetch.hpp"
+#include "sim_clock/check/written_first.hpp"
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
@@ -169,7 +170,18 @@ class World {
   void single_fetch(std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
                     std::string_view name) {
     fetches_.declare(segment, offset, bytes, name);
-    scheduler_.watch_fetches();
+    scheduler_.check_steps();
+  }
+
+  /// A task that reads one of these bytes of a segment before somebody has written it ends the execution: whoever made
+  /// the segment has not made what is in it. Not for words that are polled while they are still zero.
+  /// @param segment  name of the segment without '/'; it may be created later
+  /// @param bytes    1 to Segments::segment_bytes_max
+  /// @param name     for the message, e.g. "segment.request"
+  void written_first(std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
+                     std::string_view name) {
+    written_first_.declare(segment, offset, bytes, name);
+    scheduler_.check_steps();
   }
 
   /// Calls `check` each time that every task waits of its own accord and none is merely held up, before time
@@ -239,7 +251,11 @@ class World {
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
-  [[nodiscard]] SingleFetch& fetches() noexcept { return fetches_; }
+  /// For what the scenario has declared: the running task performs `operation` next.
+  void check_step(const Task& task, const Operation& operation) noexcept {
+    fetches_.performs(task, operation);
+    written_first_.performs(task, operation);
+  }
   [[nodiscard]] Threads& threads() noexcept { return threads_; }
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
@@ -304,6 +320,7 @@ class World {
   Faults faults_{*this};
   Damages damages_{*this};
   SingleFetch fetches_{*this};
+  WrittenFirst written_first_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
