@@ -15,6 +15,7 @@ SamplingStrategy::TimeMode PctStrategy::begin() noexcept {
   std::size_t change_points_count = 0;  // d - 1
   while (change_points_count < 5 && generator().below(3) != 0) ++change_points_count;
   change_points().begin(generator(), change_points_count);
+  // Priorities change seldom: without an end to its turns a clock that goes first does so for good.
   limit_clock_turns(std::uint32_t{1} << generator().below(8));
   return draw_time_mode();
 }

@@ -6,8 +6,9 @@
 // 1/(n k^(d-1)). k is estimated from the executions before; d is drawn for each execution from 1 to 6, small
 // ones more often. In three executions of four priorities change only before operations on things that several
 // tasks use (SharedThings). The clock is one of the tasks: a time-out fires early when the clock has a higher priority
-// than all who could run, and a falling task falls below the clock, too. A task that yields or polls falls, as
-// its source does with one that yields: what it waits for would never come.
+// than all who could run, at most 1, 2, 4 ... 128 times in an execution, and a falling task falls below the clock,
+// too. A task that yields or polls falls, as its source does with one that yields: what it waits for would never
+// come.
 #pragma once
 
 #include <array>

@@ -4,8 +4,8 @@
 // Source: Zhao, Wolff, Mathur, Roychoudhury, "Selectively uniform concurrency testing", ASPLOS 2025. If the
 // task that is to do the next interesting operation is drawn with a probability proportional to the number of
 // interesting operations that it has left, all their interleavings are equally likely. The others wait before
-// their interesting operations until that task has done its own. The numbers are learned from the executions
-// before. Interesting is one thing (SharedThings) that several tasks use, or, where all matters,
+// their interesting operations until that task has done its own; one that had to wait within its operation, and
+// can go on, has done it. The numbers are learned from the executions before. Interesting is one thing (SharedThings) that several tasks use, or, where all matters,
 // everything. In every second execution the clock takes part as a task with 1 to 64 operations, each of which
 // goes on to the next timer.
 #pragma once
