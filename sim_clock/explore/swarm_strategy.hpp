@@ -54,9 +54,9 @@ class SwarmStrategy final : public Strategy {
   SurwStrategy surw_;
   StallStrategy stall_;
   std::array<SamplingStrategy*, members_count> members_{&random_, &pct_, &pos_, &surw_, &stall_};
-  static constexpr std::array<Member, 20> cycle{pos,   surw, pct,  pos, surw, pos,  surw,
-                                                stall, pos,  surw, pct, pos,  surw, random,
-                                                pos,   surw, pct,  pos, surw, stall};
+  static constexpr std::array<Member, 24> cycle{pos,  surw, pct,  pos, surw, pos,  surw,   pos,
+                                                surw, pos,  surw, pct, pos,  surw, stall,  pos,
+                                                surw, pos,  surw, pct, pos,  surw, random, pos};
   std::uint64_t executions_ = 0;                       // that count
   std::uint64_t cycle_executions_ = 0;                 // of these, by the cycle
   std::array<std::uint32_t, members_count> yields_{};  // of late

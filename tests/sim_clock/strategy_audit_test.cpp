@@ -312,7 +312,7 @@ TEST(Swarm, gives_every_member_its_turn_also_when_one_yields_all) {
     ++follows[strategy.follows_steps()];  // random alone does not
     strategy.learn({.new_states = strategy.follows_steps() ? 10U : 0U});
   }
-  EXPECT_GE(follows[false], 2'000 * 3 / 4 / 20);  // its share of the cycle
+  EXPECT_GE(follows[false], 2'000 * 3 / 4 / 24);  // its share of the cycle
   EXPECT_GE(follows[true], 1'000);
 }
 
