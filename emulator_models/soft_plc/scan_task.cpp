@@ -34,7 +34,6 @@ ScanTask::ScanTask(const ScanConfig& config, nanoseconds now) noexcept
 
 bool ScanTask::order_run(StartKind start) noexcept {
   if ((fault_ || halt_code_) && !reset_was_ordered_) return false;
-  if (ordered_mode_ == RunMode::run) return true;
   ordered_mode_ = RunMode::run;
   ordered_start_ = start;
   return true;
@@ -86,8 +85,6 @@ ScanStep ScanTask::step(ScanAction action) noexcept {
 ScanStep ScanTask::enter_fault(FaultCode code) noexcept {
   fault_ = Fault{code, action_, scan_number_, now_ - scan_start_};
   mode_ = ordered_mode_ = RunMode::stop;
-  reset_was_ordered_ = false;
-  first_scan_ = false;
   return step(ScanAction::enter_fault);
 }
 
@@ -154,7 +151,6 @@ ScanStep ScanTask::after(ScanAction finished) noexcept {
 
 ScanStep ScanTask::end_scan() noexcept {
   scan_is_open_ = false;
-  watchdog_.end_scan();
   const bool overrun = period_.end_scan(now_);
   if (overrun && config_.overrun == OverrunRule::stop && mode_ == RunMode::run)
     return enter_fault(FaultCode::overrun);

@@ -80,7 +80,8 @@ class ScanTask {
   /// @return      what to do now
   [[nodiscard]] ScanStep next(std::chrono::nanoseconds now, Progress last = Progress::finished) noexcept;
 
-  /// To RUN, if it is not there already and has not been stopped meanwhile.
+  /// To RUN; without effect on a cycle that is there and has not been stopped meanwhile.
+  /// @param start  that of the latest order counts
   /// @return false = refused: there is a fault, which has to be reset first
   [[nodiscard]] bool order_run(StartKind start) noexcept;
   void order_stop() noexcept;

@@ -1,6 +1,6 @@
 // Watches one scan: a scan that lasts as long as the limit is still normal, one that lasts longer is not.
 //
-// Only the end of a whole scan ends the watch: there is no way to buy time within a scan. The caller brings the
+// Only the start of the next scan begins the watch anew: there is no way to buy time within a scan. The caller brings the
 // time, and decides what a bite means (scan_task.hpp).
 #pragma once
 
@@ -15,15 +15,11 @@ class Watchdog {
   /// @param limit  above zero
   explicit constexpr Watchdog(std::chrono::nanoseconds limit = limit_default) noexcept : limit_{limit} {}
 
-  constexpr void begin_scan(std::chrono::nanoseconds now) noexcept {
-    scan_start_ = now;
-    watching_ = true;
-  }
-  constexpr void end_scan() noexcept { watching_ = false; }
+  constexpr void begin_scan(std::chrono::nanoseconds now) noexcept { scan_start_ = now; }
 
-  /// @return whether the scan that is under way has lasted too long; false between two scans
+  /// @return whether the scan that began last has lasted too long, if it still is under way
   [[nodiscard]] constexpr bool bites(std::chrono::nanoseconds now) const noexcept {
-    return watching_ && now - scan_start_ > limit_;
+    return now - scan_start_ > limit_;
   }
 
   /// The last moment at which the scan that is under way is still normal.
@@ -32,7 +28,6 @@ class Watchdog {
  private:
   std::chrono::nanoseconds limit_;
   std::chrono::nanoseconds scan_start_{0};
-  bool watching_ = false;
 };
 
 }  // namespace emulator_models::soft_plc

@@ -241,12 +241,25 @@ TEST_F(ScanTaskTest, watchdog_is_named_when_a_scan_breaks_both_limits) {
   EXPECT_EQ(task.fault()->code, FaultCode::watchdog);
 }
 
+TEST_F(ScanTaskTest, late_start_in_stop_is_only_counted) {
+  ScanTask task = make({.period = 10ms, .overrun = OverrunRule::stop});
+  rig.now = 25ms;
+  EXPECT_EQ(scan(task), stop_scan);
+  EXPECT_EQ(task.period().lost_starts_count(), 2U);
+}
+
+TEST_F(ScanTaskTest, reset_without_a_fault_does_nothing) {
+  ScanTask task = running({.period = 10ms});
+  task.order_reset();
+  EXPECT_EQ(scan(task), run_scan);
+}
+
 TEST_F(ScanTaskTest, a_clock_that_steps_back_stands_still) {
   ScanTask task = running({.period = 10ms});
-  rig.now = 10ms;
-  EXPECT_EQ(task.next(10ms).action, ScanAction::system_analysis);
-  EXPECT_EQ(task.next(3ms).action, ScanAction::read_inputs);
-  EXPECT_EQ(task.next(11ms).scan_start, 10ms);
+  rig.duration_of(ScanAction::system_analysis) = 2ms;
+  in_the_middle_of(ScanAction::write_outputs, [&] { rig.now = 1ms; });
+  EXPECT_EQ(scan(task), run_scan);
+  EXPECT_EQ(task.scan_times().now, 2ms);
 }
 
 }  // namespace

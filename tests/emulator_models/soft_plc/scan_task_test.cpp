@@ -202,6 +202,24 @@ TEST_F(ScanTaskTest, scan_times_begin_anew_with_run_and_rest_in_stop) {
   EXPECT_EQ(task.scan_times().longest, 1ms);
 }
 
+TEST_F(ScanTaskTest, start_of_run_is_that_of_the_latest_order) {
+  ScanTask task = make({.period = 10ms});
+  EXPECT_TRUE(task.order_run(StartKind::cold));
+  EXPECT_TRUE(task.order_run(StartKind::warm));
+  EXPECT_EQ(scan(task), first_run_scan);
+  EXPECT_EQ(rig.last_execute.start, StartKind::warm);
+}
+
+TEST_F(ScanTaskTest, late_start_counts_from_the_moment_at_which_it_begins) {
+  ScanTask task = running({.period = 10ms});
+  rig.now = 15ms;
+  rig.duration_of(ScanAction::execute) = 2ms;
+  scan(task);
+  EXPECT_EQ(rig.last_execute.scan_start, 15ms);
+  EXPECT_EQ(task.scan_times().now, 2ms);
+  EXPECT_EQ(task.period().due(), 20ms);
+}
+
 TEST_F(ScanTaskTest, a_long_wait_is_no_matter_for_the_watchdog) {
   ScanTask task = running({.period = 1s});
   EXPECT_EQ(scan(task), run_scan);

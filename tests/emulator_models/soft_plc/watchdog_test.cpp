@@ -26,14 +26,6 @@ TEST(ScanWatchdog, each_scan_is_measured_from_its_own_start) {
   EXPECT_TRUE(dog.bites(19ms));
 }
 
-TEST(ScanWatchdog, sleeps_between_two_scans) {
-  Watchdog dog{10ms};
-  EXPECT_FALSE(dog.bites(1h));
-  dog.begin_scan(0s);
-  dog.end_scan();
-  EXPECT_FALSE(dog.bites(1h));
-}
-
 TEST(ScanTimes, show_the_latest_the_shortest_and_the_longest_scan) {
   ScanTimes times;
   EXPECT_EQ(times.shortest, 0ms);
