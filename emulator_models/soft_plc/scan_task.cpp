@@ -62,14 +62,20 @@ bool ScanTask::is_ready(nanoseconds now) const noexcept {
   return action_ != ScanAction::wait || halt_code_ || std::max(now_, now) >= period_.due();
 }
 
+bool ScanTask::is_urgent(nanoseconds now) const noexcept {
+  return halt_code_ || (action_ != ScanAction::wait && watchdog_bites(std::max(now_, now)));
+}
+
+bool ScanTask::watchdog_bites(nanoseconds now) const noexcept {
+  return !fault_ && mode_ == RunMode::run && watchdog_.bites(now);
+}
+
 ScanStep ScanTask::next(nanoseconds now, Progress last) noexcept {
   now_ = std::max(now_, now);
   if (halt_code_) return enter_fault(*std::exchange(halt_code_, std::nullopt));
   if (action_ == ScanAction::wait) return now_ < period_.due() ? step(ScanAction::wait) : begin_scan();
-  if (!fault_) {
-    if (last == Progress::failed) return enter_fault(FaultCode::program_failed);
-    if (mode_ == RunMode::run && watchdog_.bites(now_)) return enter_fault(FaultCode::watchdog);
-  }
+  if (!fault_ && last == Progress::failed) return enter_fault(FaultCode::program_failed);
+  if (watchdog_bites(now_)) return enter_fault(FaultCode::watchdog);
   return last == Progress::unfinished ? step(action_) : after(action_);
 }
 

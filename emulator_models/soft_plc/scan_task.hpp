@@ -96,12 +96,15 @@ class ScanTask {
   /// Of whole scans in RUN: from the start of system analysis to the end of write outputs.
   [[nodiscard]] const ScanTimes& scan_times() const noexcept { return scan_times_; }
   [[nodiscard]] const ScanPeriod& period() const noexcept { return period_; }
-  /// Whether next(now) would be something else than wait.
+  /// Whether next(now) has something to say but wait: the end of a scan, or a step.
   [[nodiscard]] bool is_ready(std::chrono::nanoseconds now) const noexcept;
+  /// Whether it would be enter_fault, because of halt() or of the watchdog.
+  [[nodiscard]] bool is_urgent(std::chrono::nanoseconds now) const noexcept;
 
  private:
   ScanTask(const ScanConfig& config, std::chrono::nanoseconds now) noexcept;
 
+  [[nodiscard]] bool watchdog_bites(std::chrono::nanoseconds now) const noexcept;
   [[nodiscard]] ScanStep step(ScanAction action) noexcept;
   [[nodiscard]] ScanStep enter_fault(FaultCode code) noexcept;
   [[nodiscard]] ScanStep begin_scan() noexcept;

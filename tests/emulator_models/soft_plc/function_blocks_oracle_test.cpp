@@ -28,8 +28,6 @@ struct TimerCall {
 struct TimerResult {
   bool q;
   nanoseconds et;
-
-  friend bool operator==(const TimerResult&, const TimerResult&) = default;
 };
 
 nanoseconds preset(const TimerCall& call) { return std::max(call.pt, nanoseconds{0}); }
