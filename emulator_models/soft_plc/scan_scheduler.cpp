@@ -98,9 +98,7 @@ void ScanScheduler::use_tick(Timer& timer, nanoseconds now) noexcept {
 void ScanScheduler::halt_others(std::size_t index) noexcept {
   // Those that were halted themselves do not halt again: it was one of the others that began.
   if (cycles_[index].task.fault()->code == FaultCode::other_cycle) return;
-  for (std::size_t i = 0; i < cycles_.size(); ++i) {
-    if (i != index) cycles_[i].task.halt(FaultCode::other_cycle);
-  }
+  for (Cycle& cycle : cycles_) cycle.task.halt(FaultCode::other_cycle);
 }
 
 }  // namespace emulator_models::soft_plc

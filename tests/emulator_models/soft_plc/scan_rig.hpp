@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "emulator_models/soft_plc/scan_task.hpp"
 

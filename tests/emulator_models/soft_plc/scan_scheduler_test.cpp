@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 #include "tests/emulator_models/soft_plc/scan_rig.hpp"
 
@@ -73,6 +74,42 @@ TEST(ScanScheduler, equal_priorities_get_their_steps_in_turn_longest_waiting_fir
   EXPECT_EQ(plc.run_until(50ms), "abcabcabc");
 }
 
+/// Notes when the rig does steps of this kind, which take no time.
+void watch(ScanRig& rig, ScanAction action, std::vector<nanoseconds>& times) {
+  rig.during = [&rig, action, &times](ScanAction done) {
+    if (done == action) times.push_back(rig.now);
+  };
+}
+
+TEST(ScanScheduler, a_cycle_whose_scan_is_due_waits_behind_those_that_wait_longer) {
+  const ScanConfig endless{.watchdog_limit = 1h};
+  Plc plc({.cycles = {{.scan = endless}, {.scan = endless}, {.scan = {.period = 9ms}}},
+           .slice_intervals = {0ns}});
+  for (const std::size_t i : {0, 1}) {
+    plc.rigs[i].slices_per_scan = 1'000'000;
+    plc.rigs[i].duration_of(ScanAction::execute) = 4ms;
+  }
+  plc.scheduler.cycle(2).order_stop();
+  std::vector<nanoseconds> times;
+  watch(plc.rigs[2], ScanAction::system_analysis, times);
+  plc.run_until(17ms);
+  // a 0-4, b 4-8, a 8-12; then b has waited since 8 and c since 9.
+  EXPECT_EQ(times, (std::vector<nanoseconds>{0ms, 16ms}));
+}
+
+TEST(ScanScheduler, of_two_timers_that_have_ticked_the_higher_priority_goes_first) {
+  const ScanConfig endless{.watchdog_limit = 1h};
+  Plc plc({.cycles = {{.scan = endless, .priority = 0}, {.scan = endless, .priority = 1}},
+           .slice_intervals = {2ms, 1ms}});
+  plc.rigs[1].slices_per_scan = 1'000'000;
+  plc.rigs[1].duration_of(ScanAction::execute) = 4ms;
+  std::vector<nanoseconds> times;
+  watch(plc.rigs[0], ScanAction::initialise, times);
+  plc.run_until(8ms);
+  // At 0 each has its tick, then the lower one is the next to tick; at 4 both have ticked, the lower one first.
+  EXPECT_EQ(times, (std::vector<nanoseconds>{4ms}));
+}
+
 TEST(ScanScheduler, priorities_without_interval_let_nothing_below_them_pass) {
   Plc plc({.cycles = {{.priority = 1}, {.priority = 0}}, .slice_intervals = {0ns, 0ns}});
   EXPECT_EQ(plc.run_until(5ms), "bbbbb");
@@ -132,6 +169,9 @@ TEST(ScanScheduler, bad_configurations_are_refused_with_the_way_out) {
             "priority from 0 on");
   EXPECT_EQ(error({.cycles = {}, .slice_intervals = {-1ns}}),
             "a slice interval must be 0 (always) or a time of up to 1 h");
+  EXPECT_EQ(error({.cycles = {}, .slice_intervals = {nanoseconds{1h} + 1ns}}),
+            "a slice interval must be 0 (always) or a time of up to 1 h");
+  EXPECT_TRUE(ScanScheduler::make({.cycles = {}, .slice_intervals = {1h}}, 0ns));
   EXPECT_EQ(error({.cycles = {{.scan = {.period = -1ns}}}, .slice_intervals = {0ns}}),
             "the period or the watchdog's limit of a cycle is out of range");
 }

@@ -80,6 +80,14 @@ TEST_F(ScanTaskTest, a_fault_of_the_program_ends_the_scan_at_once) {
   EXPECT_EQ(task.fault(), (Fault{FaultCode::program_failed, ScanAction::execute, 2, 0ms}));
 }
 
+TEST_F(ScanTaskTest, run_time_fault_of_the_program_is_named_when_its_slice_also_took_too_long) {
+  ScanTask task = running({.period = 10ms, .watchdog_limit = 5ms});
+  rig.fails = true;
+  rig.duration_of(ScanAction::execute) = 6ms;
+  scan(task);
+  EXPECT_EQ(task.fault()->code, FaultCode::program_failed);
+}
+
 struct FaultedTaskTest : ScanTaskTest {
   FaultedTaskTest() : task{running({.period = 10ms})} {
     rig.fails = true;
