@@ -67,7 +67,7 @@ bool ScanTask::is_urgent(nanoseconds now) const noexcept {
 }
 
 bool ScanTask::watchdog_bites(nanoseconds now) const noexcept {
-  return !fault_ && mode_ == RunMode::run && watchdog_.bites(now);
+  return mode_ == RunMode::run && watchdog_.bites(now);
 }
 
 ScanStep ScanTask::next(nanoseconds now, Progress last) noexcept {

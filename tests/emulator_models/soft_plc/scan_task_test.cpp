@@ -203,11 +203,13 @@ TEST_F(ScanTaskTest, scan_times_begin_anew_with_run_and_rest_in_stop) {
 }
 
 TEST_F(ScanTaskTest, start_of_run_is_that_of_the_latest_order) {
-  ScanTask task = make({.period = 10ms});
-  EXPECT_TRUE(task.order_run(StartKind::cold));
-  EXPECT_TRUE(task.order_run(StartKind::warm));
-  EXPECT_EQ(scan(task), first_run_scan);
-  EXPECT_EQ(rig.last_execute.start, StartKind::warm);
+  for (const StartKind latest : {StartKind::cold, StartKind::warm}) {
+    ScanTask task = make({.period = 10ms});
+    EXPECT_TRUE(task.order_run(latest == StartKind::cold ? StartKind::warm : StartKind::cold));
+    EXPECT_TRUE(task.order_run(latest));
+    EXPECT_EQ(scan(task), first_run_scan);
+    EXPECT_EQ(rig.last_execute.start, latest);
+  }
 }
 
 TEST_F(ScanTaskTest, late_start_counts_from_the_moment_at_which_it_begins) {
