@@ -1,6 +1,10 @@
 // Small programs with results worked out by hand, and programs that must be refused, with the place.
 //
 // A step is "inputs -> outputs", a scan each, 10 ms apart; TIME in milliseconds.
+#include <array>
+#include <chrono>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "tests/emulator_models/soft_plc/il_rig.hpp"
@@ -242,6 +246,32 @@ TEST_P(BadPrograms, are_refused_at_their_mistake) {
 
 INSTANTIATE_TEST_SUITE_P(Il, BadPrograms, testing::ValuesIn(bad_programs),
                          [](const auto& given) { return std::string{given.param.name}; });
+
+/// Compiles, and runs one scan of what compiles.
+void try_source(const std::string& source) {
+  const auto program = compile(source);
+  if (!program) {
+    EXPECT_FALSE(program.error().message.empty()) << source;
+    return;
+  }
+  IlMachine machine{*program};
+  std::array<std::byte, 16> inputs{};
+  std::array<std::byte, 16> outputs{};
+  std::array<std::byte, 16> memory{};
+  const auto scan = machine.run_scan({inputs, outputs, memory}, std::chrono::nanoseconds{0}, 1000);
+  EXPECT_TRUE(scan || !to_string(scan.error()).empty());
+}
+
+TEST(IlCompiler, a_source_that_is_cut_off_or_lacks_a_byte_is_refused_or_runs_to_an_end) {
+  for (const GoodProgram& program : good_programs) {
+    const std::string source = program_of(program.variables, program.body);
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      try_source(source.substr(0, i));
+      try_source(source.substr(0, i) + source.substr(i + 1));
+      try_source(source.substr(0, i) + "(" + source.substr(i));
+    }
+  }
+}
 
 }  // namespace
 }  // namespace emulator_models::soft_plc
