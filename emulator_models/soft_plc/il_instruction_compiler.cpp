@@ -108,8 +108,9 @@ void InstructionCompiler::pass() {
 bool InstructionCompiler::is_dead(const Statement& statement) const {
   if (last_pass_ || builder_.cr().state != State::unreached) return false;
   const std::string& op = statement.operation;
+  const bool formal_function = !statement.arguments.empty() && !op.starts_with("CAL");
   const bool works_without_cr = op == "LD" || op == "LDN" || op == "JMP" || op == "CAL" || op == "RET" ||
-                                op == ")" || statement.opens_parenthesis || !statement.arguments.empty();
+                                op == ")" || statement.opens_parenthesis || formal_function;
   return !works_without_cr;
 }
 
@@ -235,7 +236,7 @@ void InstructionCompiler::operate_with(Operation operation, bool negated, const 
   const SourcePlace place = statement.place;
   builder_.require_cr(place);
   if ((operation == Operation::div || operation == Operation::mod) && is_zero(operand))
-    fail(operand.place, "division by zero");
+    fail(operand.place, "division by a literal zero: it would stop the PLC in every scan");
   ValuePlace right;
   if (operand.kind != Operand::Kind::literal) {
     right = value_of(operand);

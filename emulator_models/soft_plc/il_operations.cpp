@@ -177,8 +177,9 @@ OperationResult shift(ShiftKind kind, ElementaryType type, std::uint64_t value, 
   if (is_signed_integer(count_type) && static_cast<std::int64_t>(count) < 0)
     return tl::unexpected(FaultKind::negative_shift);
   const std::uint64_t width = 8 * size_bytes(type);
+  // The accumulator is wider than most types: bits shifted out to the left go when the result is wrapped.
   const auto shifted = [&](bool left, std::uint64_t by) {
-    if (by >= width) return std::uint64_t{0};
+    if (by >= 64) return std::uint64_t{0};
     return left ? value << by : value >> by;
   };
   switch (kind) {
@@ -192,7 +193,7 @@ OperationResult shift(ShiftKind kind, ElementaryType type, std::uint64_t value, 
   }
   const std::uint64_t by = count % width;
   const bool left = kind == ShiftKind::rotate_left;
-  return wrapped(type, shifted(left, by) | shifted(!left, by == 0 ? width : width - by));
+  return wrapped(type, shifted(left, by) | shifted(!left, width - by));
 }
 
 }  // namespace emulator_models::soft_plc

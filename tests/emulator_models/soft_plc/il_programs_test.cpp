@@ -59,6 +59,7 @@ const GoodProgram good_programs[] = {
     {"division_keeps_its_order", ints, "LD i\nDIV( j\nSUB k\n)\nST i", "i=100 j=12 k=2 -> i=10"},
     {"compare_with_a_parenthesis", ints, "LD i\nGT( j\nADD k\n)\nST q", "i=6 j=3 k=2 -> q=1 ; i=5 -> q=0"},
     {"bool_less_than_a_parenthesis", abcq, "LD a\nLT( b\nAND c\n)\nST q", "b=1 c=1 -> q=1 ; a=1 -> q=0"},
+    {"literal_before_a_parenthesis", ints, "LD 2\nMUL( i\nADD 1\n)\nST j", "i=3 -> j=8"},
     {"parenthesis_of_literals", ints, "LD 2\nMUL( 3\nADD 4\n)\nST i", "-> i=14"},
 
     // Numbers.
@@ -67,6 +68,7 @@ const GoodProgram good_programs[] = {
      "-> l=8 u=255"},
     {"division_cuts_off", ints, "LD i\nDIV 2\nST j\nLD i\nMOD 2\nST k", "i=7 -> j=3 k=1 ; i=-7 -> j=-3 k=-1"},
     {"int_wraps", ints, "LD i\nADD 1\nST i", "i=32767 -> i=-32768"},
+    {"what_wrapped_is_what_is_compared", ints, "LD i\nADD 1\nLT 0\nST q", "i=32767 -> q=1 ; i=5 -> q=0"},
     {"sint_wraps", "n : SINT;", "LD n\nSUB 1\nST n", "n=-128 -> n=127"},
     {"usint_wraps", "u : USINT;", "LD u\nMUL 2\nST u", "u=200 -> u=144"},
     {"udint_wraps", "u : UDINT;", "LD u\nADD 1\nST u", "u=4294967295 -> u=0"},
@@ -102,6 +104,10 @@ const GoodProgram good_programs[] = {
     {"shift", "w : WORD;", "LD w\nSHL 4\nST w", "w=4660 -> w=9024"},
     {"shift_right", "b : BYTE;", "LD b\nSHR 3\nST b", "b=200 -> b=25"},
     {"rotate", "b, c : BYTE;", "LD b\nROL 1\nST c\nROR 2\nST b", "b=129 -> c=3 b=192"},
+    {"shift_of_lword_by_its_width", "l : LWORD; n : INT;", "LD l\nSHR n\nST l",
+     "l=255 n=63 -> l=0 ; l=255 n=64 -> l=0"},
+    {"rotation_by_the_width_changes_nothing", "l : LWORD; b : BYTE; n : INT;",
+     "LD l\nROL n\nST l\nLD b\nROR n\nST b", "l=255 b=9 n=64 -> l=255 b=9 ; n=0 -> l=255 b=9"},
     {"shift_by_the_width_gives_zero", "w : WORD; n : INT;", "LD w\nSHL n\nST w", "w=65535 n=16 -> w=0"},
 
     // Jumps.

@@ -33,7 +33,7 @@ TEST(IlRule, a_comment_is_a_blank_and_does_not_nest) {
 TEST(IlRule, slashes_begin_no_comment) { EXPECT_EQ(place_of_refusal("LD a // no\nST q"), "2:6"); }
 
 TEST(IlRule, keywords_and_names_are_the_same_in_any_case) {
-  EXPECT_EQ(result_of("Ld A\njmpc THERE\nret\ntHere: st Q", "a=1 -> q=1"), "");
+  EXPECT_EQ(result_of("Ld A\njmpc ThE_zone\nret\ntHe_ZONE: st Q", "a=1 -> q=1"), "");
 }
 
 TEST(IlRule, operators_cannot_be_variables) {
@@ -215,6 +215,21 @@ TEST(IlRule, the_cr_at_a_label_is_what_all_ways_agree_on) {
 
 TEST(IlRule, a_label_reached_from_below_only_takes_the_cr_from_there) {
   EXPECT_EQ(result_of("JMP down\nup: ST q\nRET\ndown: LD a\nJMP up", "a=1 -> q=1 ; a=0 -> q=0"), "");
+}
+
+TEST(IlRule, a_label_reached_from_below_over_others_takes_the_cr_from_there) {
+  EXPECT_EQ(result_of("JMP down\nfirst: ST q\nRET\nsecond: JMP first\ndown: LD a\nJMP second",
+                      "a=1 -> q=1 ; a=0 -> q=0"),
+            "");
+}
+
+TEST(IlRule, every_use_of_a_cr_that_comes_from_below_waits_for_it) {
+  for (const char* const use : {"AND b", "AND( b\n)", "CALC t(IN := b)", "CALCN t", "SEL i, j", "JMPC out",
+                                "RETCN", "CLK e", "NOT", "S q"}) {
+    const std::string body = std::string{"JMP down\nup: "} + use + "\nRET\ndown: LD a\nJMP up\nout: LD a";
+    EXPECT_EQ(refusal_of("a, b, q : BOOL; i, j : INT; t : TON; e : R_TRIG;", body).message, "compiled")
+        << use;
+  }
 }
 
 TEST(IlRule, the_cr_is_not_used_before_it_is_set) {
