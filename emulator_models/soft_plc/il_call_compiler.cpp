@@ -13,6 +13,8 @@ using State = CurrentResult::State;
 
 constexpr std::uint32_t kept_cr_slot = 0;  // calls of blocks do not stand in parentheses: no slot is in use
 
+constexpr std::size_t formal_arguments_max = 16;  ///< each is looked for among all
+
 ValuePlace place_in(InstancePlace instance, const BlockParameter& parameter) noexcept {
   return {parameter.type, Area::variables, instance.offset + parameter.offset, 0, {}};
 }
@@ -120,6 +122,9 @@ void InstructionCompiler::call_function(const Statement& statement, const IlFunc
 
 std::vector<Operand> InstructionCompiler::formal_arguments(const Statement& statement,
                                                            const IlFunction& function) const {
+  if (statement.arguments.size() > formal_arguments_max)
+    fail(statement.place, "a function takes at most " + std::to_string(formal_arguments_max) +
+                              " named parameters: call it twice");
   const std::size_t count =
       std::max(function.parameters.size(), function.extensible ? statement.arguments.size() : 0);
   std::vector<const NamedArgument*> given(count);

@@ -81,8 +81,8 @@ tl::expected<std::uint64_t, RunTimeFault> IlMachine::run_scan(const ProcessImage
 
   const Instruction* const code = program_.code.data();
   const Instruction* next = code;
-  // Instructions are counted by straight pieces, at the jump that ends one: counting each would cost as much
-  // as executing it (tests/bench/il_bench.cpp).
+  // Instructions are counted by straight pieces, at the jump that ends one: that keeps the count out of the
+  // path of all others.
   const Instruction* piece = code;
   std::uint64_t executed = 0;
   std::uint64_t acc = 0;

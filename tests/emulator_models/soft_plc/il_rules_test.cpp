@@ -1,4 +1,6 @@
 // One test for each rule of instruction list, edition 2, named after it. Programs begin at line 2.
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "emulator_models/soft_plc/il_parser.hpp"
@@ -254,6 +256,19 @@ TEST(IlRule, the_cr_is_the_first_argument_of_a_function) {
 
 TEST(IlRule, a_function_in_formal_form_takes_no_cr_and_sets_it) {
   EXPECT_EQ(result_of("MAX(\nIN1 := i,\nIN2 := j\n)\nST i", "i=3 j=8 -> i=8"), "");
+}
+
+TEST(IlRule, min_and_max_take_any_number_of_arguments_and_16_named_ones) {
+  EXPECT_EQ(result_of("LD 1\nMAX i, j, 4\nST i", "i=3 j=8 -> i=8 ; i=2 j=3 -> i=4"), "");
+  const auto call = [](int count) {
+    std::ostringstream body;
+    body << "MAX(";
+    for (int n = 1; n <= count; ++n) body << (n > 1 ? ", IN" : "IN") << n << " := " << (n == 9 ? "j" : "i");
+    body << ")\nST i";
+    return body.str();
+  };
+  EXPECT_EQ(result_of(call(16), "i=3 j=8 -> i=8"), "");
+  EXPECT_EQ(place_of_refusal(call(17)), "2:1");
 }
 
 TEST(IlRule, a_block_is_called_in_four_forms) {
