@@ -12,40 +12,6 @@ namespace {
 
 using State = CurrentResult::State;
 
-struct NamedOperation {
-  std::string_view name;
-  Operation operation;
-  bool negated;
-};
-constexpr std::array<NamedOperation, 17> named_operations{{{"AND", Operation::bit_and, false},
-                                                           {"ANDN", Operation::bit_and, true},
-                                                           {"OR", Operation::bit_or, false},
-                                                           {"ORN", Operation::bit_or, true},
-                                                           {"XOR", Operation::bit_xor, false},
-                                                           {"XORN", Operation::bit_xor, true},
-                                                           {"ADD", Operation::add, false},
-                                                           {"SUB", Operation::sub, false},
-                                                           {"MUL", Operation::mul, false},
-                                                           {"DIV", Operation::div, false},
-                                                           {"MOD", Operation::mod, false},
-                                                           {"GT", Operation::greater, false},
-                                                           {"GE", Operation::greater_equal, false},
-                                                           {"EQ", Operation::equal, false},
-                                                           {"NE", Operation::not_equal, false},
-                                                           {"LE", Operation::less_equal, false},
-                                                           {"LT", Operation::less, false}}};
-
-const NamedOperation* find_operation(std::string_view name) noexcept {
-  for (const NamedOperation& one : named_operations) {
-    if (one.name == name) return &one;
-  }
-  return nullptr;
-}
-
-bool is_comparison(Operation operation) noexcept {
-  return operation >= Operation::greater && operation <= Operation::less;
-}
-
 ElementaryType result_type(Operation operation, ElementaryType operands) noexcept {
   return is_comparison(operation) ? ElementaryType::boolean : operands;
 }
@@ -352,18 +318,22 @@ std::size_t InstructionCompiler::emit_skip(const std::string& condition, SourceP
   return builder_.emit({condition == "C" ? Opcode::jump_if_not : Opcode::jump_if, {}, 0, {}, 0}, place);
 }
 
+std::size_t InstructionCompiler::emit_jump(const Statement& statement, const std::string& condition) {
+  Opcode opcode = Opcode::jump;
+  if (!condition.empty()) {
+    builder_.require_type(ElementaryType::boolean, statement.place, statement.operation);
+    opcode = condition == "C" ? Opcode::jump_if : Opcode::jump_if_not;
+  }
+  return builder_.emit({opcode, {}, 0, {}, 0}, statement.place);
+}
+
 void InstructionCompiler::jump(const Statement& statement, const std::string& condition) {
   if (!deferred_.empty()) fail(statement.place, "a jump must not leave a parenthesis: close it first");
   expect_operands(statement, 1);
   const Operand& target = statement.operands.front();
   if (target.kind != Operand::Kind::name || !target.member.empty())
     fail(target.place, statement.operation + " takes a label");
-  Opcode opcode = Opcode::jump;
-  if (!condition.empty()) {
-    builder_.require_type(ElementaryType::boolean, statement.place, statement.operation);
-    opcode = condition == "C" ? Opcode::jump_if : Opcode::jump_if_not;
-  }
-  const std::size_t index = builder_.emit({opcode, {}, 0, {}, 0}, statement.place);
+  const std::size_t index = emit_jump(statement, condition);
   labels_.jump(target.text, target.place, builder_.cr(), index);
   if (condition.empty()) builder_.set_cr({});
 }
@@ -371,12 +341,7 @@ void InstructionCompiler::jump(const Statement& statement, const std::string& co
 void InstructionCompiler::return_from(const Statement& statement, const std::string& condition) {
   if (!deferred_.empty()) fail(statement.place, "a return must not leave a parenthesis: close it first");
   expect_operands(statement, 0);
-  Opcode opcode = Opcode::jump;
-  if (!condition.empty()) {
-    builder_.require_type(ElementaryType::boolean, statement.place, statement.operation);
-    opcode = condition == "C" ? Opcode::jump_if : Opcode::jump_if_not;
-  }
-  returns_.push_back(builder_.emit({opcode, {}, 0, {}, 0}, statement.place));
+  returns_.push_back(emit_jump(statement, condition));
   if (condition.empty()) builder_.set_cr({});
 }
 

@@ -65,6 +65,8 @@ class InstructionCompiler {
   void load_operand(const Operand& operand);
   void store_to(const ValuePlace& target, const std::string& name, bool negated, SourcePlace place);
   /// @return the index of a jump that is taken when the condition, "C" or "CN", does not hold
+  /// JMP and RET: the target is filled in later. @return the index of the jump
+  std::size_t emit_jump(const Statement& statement, const std::string& condition);
   std::size_t emit_skip(const std::string& condition, SourcePlace place);
 
   [[nodiscard]] const Symbol* find(const Operand& operand) const;

@@ -27,10 +27,6 @@ std::uint64_t compare(Operation operation, T left, T right) noexcept {
   }
 }
 
-bool is_comparison(Operation operation) noexcept {
-  return operation >= Operation::greater && operation <= Operation::less;
-}
-
 template <typename Real>
 OperationResult operate_reals(Operation operation, Real left, Real right) noexcept {
   if (is_comparison(operation)) return compare(operation, left, right);
@@ -111,7 +107,32 @@ OperationResult real_to_integer(ElementaryType to, double value) noexcept {
   return static_cast<std::uint64_t>(rounded);
 }
 
+constexpr std::array<NamedOperation, 17> named_operations{{{"AND", Operation::bit_and, false},
+                                                           {"ANDN", Operation::bit_and, true},
+                                                           {"OR", Operation::bit_or, false},
+                                                           {"ORN", Operation::bit_or, true},
+                                                           {"XOR", Operation::bit_xor, false},
+                                                           {"XORN", Operation::bit_xor, true},
+                                                           {"ADD", Operation::add, false},
+                                                           {"SUB", Operation::sub, false},
+                                                           {"MUL", Operation::mul, false},
+                                                           {"DIV", Operation::div, false},
+                                                           {"MOD", Operation::mod, false},
+                                                           {"GT", Operation::greater, false},
+                                                           {"GE", Operation::greater_equal, false},
+                                                           {"EQ", Operation::equal, false},
+                                                           {"NE", Operation::not_equal, false},
+                                                           {"LE", Operation::less_equal, false},
+                                                           {"LT", Operation::less, false}}};
+
 }  // namespace
+
+const NamedOperation* find_operation(std::string_view upper_name) noexcept {
+  for (const NamedOperation& one : named_operations) {
+    if (one.name == upper_name) return &one;
+  }
+  return nullptr;
+}
 
 std::string_view to_string(FaultKind kind) noexcept {
   switch (kind) {

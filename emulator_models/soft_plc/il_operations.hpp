@@ -33,6 +33,20 @@ enum class Operation : std::uint8_t {
   maximum,
 };
 
+/// Comparisons yield a BOOL, all others the type of their operands.
+[[nodiscard]] constexpr bool is_comparison(Operation operation) noexcept {
+  return operation >= Operation::greater && operation <= Operation::less;
+}
+
+/// An operator that takes an operand or puts off its work until a parenthesis is closed.
+struct NamedOperation {
+  std::string_view name;
+  Operation operation;
+  bool negated;  ///< the operand is
+};
+/// @return nullptr for other operators
+[[nodiscard]] const NamedOperation* find_operation(std::string_view upper_name) noexcept;
+
 enum class ShiftKind : std::uint8_t { left, right, rotate_left, rotate_right };
 
 enum class FaultKind : std::uint8_t {

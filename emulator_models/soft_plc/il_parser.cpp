@@ -6,14 +6,12 @@
 
 #include "emulator_models/soft_plc/il_failure.hpp"
 #include "emulator_models/soft_plc/il_lexer.hpp"
+#include "emulator_models/soft_plc/il_operations.hpp"
 #include "emulator_models/soft_plc/il_types.hpp"
 
 namespace emulator_models::soft_plc {
 namespace {
 
-constexpr std::array<std::string_view, 17> deferrable{"AND", "ANDN", "OR",  "ORN", "XOR", "XORN",
-                                                      "ADD", "SUB",  "MUL", "DIV", "MOD", "GT",
-                                                      "GE",  "EQ",   "NE",  "LE",  "LT"};
 constexpr std::array<std::string_view, 14> other_operators{
     "LD", "LDN", "ST", "STN", "S", "R", "NOT", "JMP", "JMPC", "JMPCN", "CAL", "CALC", "CALCN", "RET"};
 constexpr std::array<std::string_view, 19> keywords{
@@ -184,7 +182,7 @@ class Parser {
     if (!at(TokenKind::identifier)) fail_here("an instruction begins with an operator such as LD or AND");
     statement.operation = upper(next().text);
     if (skip(TokenKind::left_parenthesis)) {
-      if (!is_deferrable(statement.operation)) {
+      if (find_operation(statement.operation) == nullptr) {
         take_call_arguments(statement);
         return;
       }
@@ -262,12 +260,8 @@ class Parser {
 }  // namespace
 
 bool is_reserved(std::string_view upper_name) noexcept {
-  return contains(deferrable, upper_name) || contains(other_operators, upper_name) ||
+  return find_operation(upper_name) != nullptr || contains(other_operators, upper_name) ||
          contains(keywords, upper_name) || elementary_type(upper_name).has_value();
-}
-
-bool is_deferrable(std::string_view upper_operation) noexcept {
-  return contains(deferrable, upper_operation);
 }
 
 tl::expected<SyntaxTree, IlError> parse(std::string_view source) {

@@ -19,7 +19,4 @@ namespace emulator_models::soft_plc {
 /// Operators of edition 2, keywords and types: no names of variables, labels or programs.
 [[nodiscard]] bool is_reserved(std::string_view upper_name) noexcept;
 
-/// AND(, ADD(, GT( and the like: the operators that can be put off.
-[[nodiscard]] bool is_deferrable(std::string_view upper_operation) noexcept;
-
 }  // namespace emulator_models::soft_plc

@@ -1,5 +1,7 @@
 #include "sim_clock/world/faults.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sim_clock/world/world.hpp"
@@ -20,7 +22,9 @@ void Faults::grant_crashes(ProcessId process, CrashGrant grant) noexcept {
 
 void Faults::grant_stalls(ProcessId process, unsigned times) noexcept {
   left(FaultKind::process_stall) += times;
-  if (stalls_left_[process] == 0) stall_candidates_[stall_candidates_count_++] = process;
+  ProcessId* const end = stall_candidates_.begin() + stall_candidates_count_;
+  if (std::find(stall_candidates_.begin(), end, process) == end)
+    stall_candidates_[stall_candidates_count_++] = process;
   stalls_left_[process] += times;
 }
 
@@ -56,7 +60,10 @@ void Faults::choose_stall() noexcept {
   const std::size_t variant = strike(FaultKind::process_stall, stall_candidates_count_ * durations.size());
   if (variant == 0) return;
   const ProcessId id = stall_candidates_[(variant - 1) / durations.size()];
-  if (stalls_left_[id] == 0) return;  // the grant of another process was meant to be left
+  if (stalls_left_[id] == 0) {
+    ++left(FaultKind::process_stall);  // this process has had all of its own; what is left is for others
+    return;
+  }
   --stalls_left_[id];
   const SimTime duration = durations[(variant - 1) % durations.size()];
   world_.note([&] {

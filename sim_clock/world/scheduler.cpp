@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <exception>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
-#include "sim_clock/explore/task_set.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -278,58 +275,6 @@ std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept
   return chosen;
 }
 
-std::size_t Scheduler::strike(FaultKind kind, std::size_t variants_count) noexcept {
-  if (in_fair_tail()) return 0;
-  ++decisions_;
-  const std::size_t variant = strategy_->strike(kind, variants_count);
-  LTSIM_CHECK(variant <= variants_count);
-  if (variant != 0) mix(std::uint64_t{static_cast<std::uint8_t>(kind)} << 32U | variant);
-  return variant;
-}
-
-void Scheduler::kill_tasks(ProcessId process) noexcept {
-  for (std::size_t i = 0; i < tasks_count_; ++i) {
-    Task& task = *tasks_[i];
-    if (task.process != process || task.state == Task::State::finished || task.state == Task::State::killed)
-      continue;
-    if (task.state == Task::State::runnable) make_unrunnable(task);
-    if (task.state == Task::State::stalled) --stalled_count_;
-    clock_.cancel(task.id);
-    task.state = Task::State::killed;
-    --unfinished_count_;
-    --unfinished_in_[process];
-  }
-  no_processor_before_[process] = SimTime{0};  // what is started again is another process
-  // Only now: a task of this process must not be woken.
-  for (std::size_t i = 0; i < tasks_count_; ++i) {
-    if (tasks_[i]->process == process) world_.mutexes().owner_died(tasks_[i]->id);
-  }
-}
-
-void Scheduler::stall_process(ProcessId process, SimTime duration) noexcept {
-  const SimTime end = clock_.now() + duration;
-  no_processor_before_[process] = std::max(no_processor_before_[process], end);
-  for (std::size_t i = 0; i < tasks_count_; ++i) {
-    Task& task = *tasks_[i];
-    if (task.process != process || task.state != Task::State::runnable) continue;
-    make_unrunnable(task);
-    make_runnable(task);  // when the stall is over; so will those be that something wakes meanwhile
-  }
-}
-
-void Scheduler::wait_for_processor() noexcept {
-  Task& self = *running_;
-  if (self.state != Task::State::stalled) return;
-  Task* const other = next_after_stop();
-  if (other != &self) switch_to(*other);
-}
-
-void Scheduler::leave_killed() noexcept {
-  Task& self = *running_;
-  leave(self);
-  LTSIM_UNREACHABLE("a killed task was resumed");
-}
-
 void Scheduler::leave(Task& self) noexcept {
   Task* const next = next_after_stop();
   if (next != nullptr) {
@@ -338,25 +283,6 @@ void Scheduler::leave(Task& self) noexcept {
     running_ = nullptr;
     Context::switch_between(self.context, main_context_);
   }
-}
-
-void Scheduler::wall_clock_was_stepped(SimTime forward) noexcept {
-  for (std::size_t i = 0; i < tasks_count_; ++i) {
-    Task& task = *tasks_[i];
-    if (task.state != Task::State::blocked || !task.deadline_on_wall_clock ||
-        task.deadline == VirtualClock::never) {
-      continue;
-    }
-    task.deadline = std::max(task.deadline - forward, SimTime{0});
-    clock_.arm(task.deadline, task.id);
-  }
-}
-
-void Scheduler::delay_start(Task& task, SimTime begin) noexcept {
-  make_unrunnable(task);
-  task.state = Task::State::stalled;
-  ++stalled_count_;
-  clock_.arm(begin, task.id);
 }
 
 void Scheduler::fail(OutcomeKind kind, std::string message) {
@@ -492,39 +418,6 @@ void Scheduler::make_runnable(Task& task) noexcept {
 void Scheduler::make_unrunnable(const Task& task) noexcept {
   runnable_[task.id / 64] &= ~(std::uint64_t{1} << (task.id % 64));
   --runnable_count_;
-}
-
-void Scheduler::skip_time_if_all_give_way() noexcept {
-  if (!clock_.any_armed()) return;
-  bool all = true;
-  for_each_task(runnable_, [&](TaskId id) {
-    all = all &&
-          (pending_[id].kind == OperationKind::yield || tasks_[id]->looks_count >= looks_before_giving_way);
-  });
-  if (!all) return;
-  clock_.pass(std::max(clock_.next_deadline() - clock_.now(), SimTime{0}));
-  wake_due();
-}
-
-void Scheduler::pass_fair_tail(Task& task, const Operation& operation) noexcept {
-  if (points_ > points_max_) {
-    const GhostScope ghost;
-    fail(OutcomeKind::livelock,
-         fmt::format("{} scheduling points and no end; {}", points_max_, describe_livelock(world_)));
-  }
-  // Of all that a task does again and again the same one is kept, wherever in its loop the tail begins and ends.
-  // Addresses outside of segments are no part of that: they differ from run to run.
-  const auto keep_least = [&](std::optional<Operation>& kept) {
-    const auto key = [](const Operation& of) {
-      return std::tuple{of.object == 0, of.object, of.object == 0 ? 0 : of.offset, of.kind, of.bytes};
-    };
-    if (!kept || key(operation) < key(*kept)) kept = operation;
-  };
-  if (can_be_polling(operation.kind) || operation.kind == OperationKind::atomic_update) {
-    keep_least(task.polls);
-  } else if (changes_what_others_see(operation.kind)) {
-    keep_least(task.repeats);
-  }
 }
 
 }  // namespace ltsim

@@ -66,7 +66,7 @@ class Scheduler {
   /// Whether tasks were made and never run.
   [[nodiscard]] bool run_is_missing() const noexcept { return tasks_count_ != 0 && !has_run_; }
 
-  // --- for faults ---
+  // --- for faults (scheduler_faults.cpp) ---
 
   /// Asks whether a granted fault strikes: 0, it does not; otherwise 1 to variants_count. Never in the fair tail.
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept;
@@ -190,7 +190,7 @@ class Scheduler {
   void wake_due() noexcept;
   void make_runnable(Task& task) noexcept;
   void make_unrunnable(const Task& task) noexcept;
-  /// In the fair tail: where all who could run wait for others, and somebody sleeps or is held up, that time passes. It
+  /// In the fair tail (fair_tail.cpp): where all who could run wait for others, and somebody sleeps or is held up, that time passes. It
   /// may be longer than the tail, at so much a point.
   void skip_time_if_all_give_way() noexcept;
   /// Notes what the task does in the fair tail, and ends the execution where that has lasted long enough.

@@ -9,6 +9,12 @@
 
 namespace ltsim {
 
+inline sem_t* open_semaphore() { return sem_open("/s", O_CREAT, 0600, 0U); }
+
+inline SimTime to_time(const timespec& time) {
+  return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+}
+
 /// The test fails if it is asked for a fault.
 class NeverStrikes final : public DefaultStrategy {
  public:

@@ -50,4 +50,25 @@ class RacesTest : public CallsTest {
   static inline volatile int seen = 0;
 };
 
+/// Tells whether two accesses race.
+class RaceDetectorTest : public RacesTest {
+ protected:
+  static OutcomeKind kind_of(std::initializer_list<Body> bodies) { return run_in_turn(bodies).kind; }
+
+  /// What comes of a write to the value, `hand_over`, and in another process `receive` and a read of it.
+  static OutcomeKind message_passing(const Body& hand_over, const Body& receive) {
+    return kind_of({[&](Memory& memory) {
+                      write(memory.value);
+                      hand_over(memory);
+                    },
+                    [&](Memory& memory) {
+                      receive(memory);
+                      read(memory.value);
+                    }});
+  }
+};
+
+inline constexpr OutcomeKind ordered = OutcomeKind::passed;
+inline constexpr OutcomeKind race = OutcomeKind::data_race;
+
 }  // namespace ltsim

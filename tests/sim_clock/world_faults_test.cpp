@@ -5,12 +5,10 @@
 #include <semaphore.h>
 #include <sys/syscall.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <condition_variable>
-#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -20,30 +18,15 @@
 namespace ltsim {
 namespace {
 
-sem_t* open_semaphore() { return sem_open("/s", O_CREAT, 0600, 0U); }
-
 int value_of(sem_t* semaphore) {
   int value = -1;
   sem_getvalue(semaphore, &value);
   return value;
 }
 
-SimTime to_time(const timespec& time) {
-  return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
-}
-
 bool is_about(SimTime measured, SimTime expected) {
   return measured >= expected - 20us && measured <= expected + 20us;
 }
-
-/// Reads the clock without asking for a step of it.
-SimTime monotonic() {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return to_time(time);
-}
-
-constexpr time_t begin_of_world = 1'767'225'600;  // 2026-01-01T00:00:00Z
 
 // --- semaphores ---
 
@@ -259,119 +242,6 @@ TEST_F(FaultsTest, a_futex_wait_wakes_for_nothing_and_atomic_wait_is_not_fooled)
             Outcome{});
 }
 
-// --- the wall clock ---
-
-TEST_F(FaultsTest, a_step_of_the_wall_clock_is_seen_by_those_who_read_it_and_by_no_other_clock) {
-  EXPECT_EQ(run_with({"fault p/main before clock_read - #2 clock-step 3",
-                      "fault p/main before clock_read - #4 clock-step 6"},
-                     [](World& world) {
-                       world.grant(FaultKind::clock_step, 2);
-                       world.process("p").start("main", [&world] {
-                         world.require(time(nullptr) == begin_of_world, "as it was");
-                         world.require(time(nullptr) == begin_of_world + 3600, "an hour forward");
-                         world.require(monotonic() < 1ms, "but not here");
-                         world.require(time(nullptr) == begin_of_world + 3540, "a minute back");
-                       });
-                       world.run();
-                     }),
-            Outcome{});
-}
-
-/// Waits 10 s by the wall clock in each of the ways that there are, and says how long each took.
-std::array<SimTime, 4> wait_by_the_wall_clock(World& world) {
-  std::array<SimTime, 4> took{};
-  const auto measure = [&](std::size_t i, const auto& wait) {
-    const timespec deadline{.tv_sec = begin_of_world + 10 * static_cast<time_t>(i + 1), .tv_nsec = 0};
-    const SimTime begin = world.now();
-    wait(deadline);
-    took[i] = world.now() - begin;
-  };
-  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
-  pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
-  measure(0, [](const timespec& deadline) { sem_timedwait(open_semaphore(), &deadline); });
-  measure(1, [](const timespec& deadline) {
-    clock_nanosleep(CLOCK_REALTIME, TIMER_ABSTIME, &deadline, nullptr);
-  });
-  pthread_mutex_lock(&mutex);
-  measure(2, [&](const timespec& deadline) { pthread_cond_timedwait(&condition, &mutex, &deadline); });
-  std::thread{[&] {
-    measure(3, [&](const timespec& deadline) { pthread_mutex_timedlock(&mutex, &deadline); });
-  }}.join();
-  pthread_mutex_unlock(&mutex);
-  return took;
-}
-
-TEST_F(FaultsTest, a_wait_that_ends_by_the_wall_clock_ends_later_when_the_clock_is_set_back) {
-  EXPECT_EQ(
-      run_with({"fault p/main in sem_timedwait s #1 clock-step 6", "fault p/main in sleep - #1 clock-step 6",
-                "fault p/main in cond_timedwait mutex-1 #1 clock-step 6",
-                "fault p/thread-1 in mutex_timedlock mutex-1 #1 clock-step 6"},
-               [](World& world) {
-                 world.grant(FaultKind::clock_step, 4);
-                 world.process("p").start("main", [&world] {
-                   for (const SimTime took : wait_by_the_wall_clock(world))
-                     world.require(is_about(took, 70s), "10 s and a minute");
-                 });
-                 world.run();
-               }),
-      Outcome{});
-}
-
-TEST_F(FaultsTest, a_wait_that_ends_by_the_wall_clock_ends_at_once_when_the_clock_passes_its_end) {
-  EXPECT_EQ(run_with({"fault p/main in sem_timedwait s #1 clock-step 2"},
-                     [](World& world) {
-                       world.grant(FaultKind::clock_step, 1);
-                       world.process("p").start("main", [&world] {
-                         for (const SimTime took : wait_by_the_wall_clock(world))
-                           world.require(is_about(took, 0s), "a minute was gone, and with it each end");
-                       });
-                       world.run();
-                     }),
-            Outcome{});
-}
-
-TEST_F(FaultsTest, a_step_that_another_task_sees_moves_the_waits_of_all) {
-  EXPECT_EQ(run_with({"fault p/other before clock_read - #1 clock-step 5"},
-                     [](World& world) {
-                       world.grant(FaultKind::clock_step, 1);
-                       world.process("p").start("main", [&world] {
-                         const timespec deadline{.tv_sec = begin_of_world + 10, .tv_nsec = 0};
-                         world.require(sem_timedwait(open_semaphore(), &deadline) == -1, "nobody posts");
-                         world.require(is_about(world.now(), 11s), "a second later");
-                       });
-                       world.process("p").start("other", [] {
-                         usleep(1000);
-                         static_cast<void>(time(nullptr));
-                       });
-                       world.run();
-                     }),
-            Outcome{});
-}
-
-TEST_F(FaultsTest, waits_by_the_monotonic_clock_and_for_a_duration_do_not_heed_the_wall_clock) {
-  EXPECT_EQ(run_with({"fault p/other before clock_read - #1 clock-step 4"},
-                     [](World& world) {
-                       std::mutex mutex;
-                       std::condition_variable condition;
-                       world.grant(FaultKind::clock_step, 1);
-                       world.process("p").start("sleeps", [&world] {
-                         std::this_thread::sleep_for(10s);
-                         world.require(is_about(world.now(), 10s), "sleep_for");
-                       });
-                       world.process("p").start("waits", [&] {
-                         std::unique_lock lock{mutex};
-                         condition.wait_for(lock, 10s);
-                         world.require(is_about(world.now(), 10s), "wait_for");
-                       });
-                       world.process("p").start("other", [] {
-                         usleep(1000);
-                         static_cast<void>(time(nullptr));
-                       });
-                       world.run();
-                     }),
-            Outcome{});
-}
-
 // --- damage in a segment ---
 
 using Bytes = std::array<std::atomic<unsigned char>, 16>;
@@ -498,97 +368,6 @@ TEST_F(FaultsTest, what_cannot_be_granted_so_or_left_over_is_refused) {
       },
   };
   for (const auto mistake : mistakes) EXPECT_EQ(run(mistake).kind, OutcomeKind::unsupported);
-}
-
-// --- as choices ---
-
-/// Passes every place where a fault can strike. Some faults leave it waiting for ever.
-void pass_every_place(World& world) {
-  world.process("one").start("main", [] {
-    auto& bytes = *static_cast<Bytes*>([] {
-      const int descriptor = shm_open("/segment", O_CREAT | O_RDWR, 0600);
-      if (descriptor < 0 || ftruncate(descriptor, 4096) != 0) return MAP_FAILED;
-      return mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-    }());
-    if (&bytes == MAP_FAILED) return;
-    for (auto& byte : bytes) ++byte;
-    sem_post(open_semaphore());
-  });
-  world.process("two").start("main", [] {
-    std::mutex mutex;
-    std::condition_variable condition;
-    bool called = false;
-    sem_wait(open_semaphore());
-    std::this_thread::sleep_for(1ms);
-    const timespec deadline{.tv_sec = time(nullptr) + 1, .tv_nsec = 0};
-    sem_timedwait(open_semaphore(), &deadline);
-    std::thread caller{[&] {
-      const std::lock_guard lock{mutex};
-      called = true;
-      condition.notify_one();
-    }};
-    std::unique_lock lock{mutex};
-    while (!called) condition.wait(lock);
-    lock.unlock();
-    caller.join();
-  });
-  world.run();
-}
-
-void pass_every_place_with_all_faults(World& world) {
-  for (const FaultKind kind : {FaultKind::lost_post, FaultKind::doubled_post, FaultKind::spurious_wake,
-                               FaultKind::interrupt, FaultKind::clock_step, FaultKind::call_failure})
-    world.grant(kind, 1);
-  for (const FaultKind kind : {FaultKind::bit_flip, FaultKind::foreign_write})
-    world.grant_in(kind, "segment", 0, 16, 1);
-  for (const char* const name : {"one", "two"})
-    world.process(name).may_crash({.times = 1, .restart_after = 1ms});
-  world.process("two").may_stall(1);
-  pass_every_place(world);
-}
-
-TEST_F(FaultsTest, every_kind_strikes_within_its_budget_and_what_was_recorded_replays) {
-  std::map<FaultKind, std::size_t> struck;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const Failure recorded = record_and_replay(seed, &pass_every_place_with_all_faults);
-    if (HasFailure()) return;
-    std::map<FaultKind, std::size_t> of_this;
-    for (const Deviation& line : recorded.schedule.deviations) {
-      if (line.kind == Deviation::Kind::fault) ++of_this[line.fault];
-    }
-    for (const auto& [kind, times] : of_this) {
-      ASSERT_LE(times, kind == FaultKind::crash ? 2U : 1U) << seed << ": " << to_string(kind);
-      struck[kind] += times;
-    }
-  }
-  for (std::size_t i = 0; i < fault_kinds_count; ++i)
-    EXPECT_GT(struck[static_cast<FaultKind>(i)], 0U) << to_string(static_cast<FaultKind>(i));
-}
-
-TEST_F(FaultsTest, nothing_is_asked_for_that_is_not_granted) {
-  NeverStrikes strategy;
-  EXPECT_EQ(run_under(strategy, 1, [](World& world) { pass_every_place(world); }), Outcome{});
-}
-
-TEST_F(FaultsTest, no_fault_strikes_in_the_fair_tail_of_an_execution_that_does_not_end) {
-  class StrikesAlways final : public DefaultStrategy {
-   public:
-    [[nodiscard]] std::size_t strike(FaultKind /*kind*/, std::size_t /*variants*/) noexcept override {
-      return 1;
-    }
-  } strategy;
-  EXPECT_EQ(run_under(strategy, 1,
-                      [](World& world) {
-                        constexpr unsigned for_ever = 1'000'000;
-                        world.grant(FaultKind::interrupt, for_ever);
-                        world.set_points_max(1000);
-                        world.process("p").start("main", [] {
-                          timespec left{.tv_sec = 1, .tv_nsec = 0};
-                          while (nanosleep(&left, &left) != 0) {
-                          }
-                        });
-                      }),
-            Outcome{});
 }
 
 }  // namespace

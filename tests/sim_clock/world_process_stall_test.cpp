@@ -120,6 +120,33 @@ TEST_F(ProcessStallTest, a_stalled_process_can_be_killed_and_its_next_life_is_no
             Outcome{});
 }
 
+TEST_F(ProcessStallTest, the_grant_of_one_process_is_not_used_up_by_another) {
+  EXPECT_EQ(
+      run_with({"fault one/main before yield - #1 process-stall 1",
+                "fault one/main before yield - #2 process-stall 1",  // one has had its own: nothing happens
+                "fault one/main before yield - #3 process-stall 6"},
+               [](World& world) {
+                 for (int i = 0; i < 20; ++i)
+                   world.process("one").may_stall(0);  // grants nothing, however often
+                 world.process("one").may_stall(1);
+                 world.process("two").may_stall(1);
+                 world.process("two").start("main", [&world] {
+                   std::this_thread::sleep_for(1500us);  // while one is stalled
+                   sched_yield();
+                   world.require(world.now() >= 2ms, "two is stalled in its turn");
+                 });
+                 world.process("one").start("main", [&world] {
+                   std::this_thread::sleep_for(100us);
+                   sched_yield();
+                   sched_yield();
+                   world.require(world.now() < 2ms, "one is stalled once");
+                   sched_yield();
+                 });
+                 world.run();
+               }),
+      Outcome{});
+}
+
 TEST_F(ProcessStallTest, no_more_often_than_granted) {
   const auto body = [](World& world) {
     world.process("victim").may_stall(2);
