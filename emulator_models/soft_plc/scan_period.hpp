@@ -46,6 +46,12 @@ class ScanPeriod {
   /// @return     whether the scan has overrun
   [[nodiscard]] bool end_scan(std::chrono::nanoseconds now) noexcept;
 
+  /// The grid goes on from the scan that began last.
+  void change(std::chrono::nanoseconds period, OverrunRule rule) noexcept {
+    period_ = period;
+    rule_ = rule;
+  }
+
   [[nodiscard]] std::uint64_t overruns_count() const noexcept { return overruns_count_; }
   [[nodiscard]] std::uint64_t lost_starts_count() const noexcept { return lost_starts_count_; }
   /// How late the latest scan started on its point of the grid.

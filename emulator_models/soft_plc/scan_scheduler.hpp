@@ -68,6 +68,7 @@ class ScanScheduler {
   /// For orders and for what is to be shown.
   /// @param index  below the number of cycles
   [[nodiscard]] ScanTask& cycle(std::size_t index) noexcept { return cycles_[index].task; }
+  [[nodiscard]] const ScanTask& cycle(std::size_t index) const noexcept { return cycles_[index].task; }
 
  private:
   struct Cycle {

@@ -96,6 +96,11 @@ ScanStep ScanTask::enter_fault(FaultCode code) noexcept {
 
 ScanStep ScanTask::begin_scan() noexcept {
   const bool starts_were_lost = period_.begin_scan(now_);
+  if (const auto next = std::exchange(next_config_, std::nullopt)) {
+    config_.overrun = next->overrun;
+    period_.change(next->period, next->overrun);
+    watchdog_ = Watchdog{next->watchdog_limit};
+  }
   scan_start_ = now_;
   scan_is_open_ = true;
   ++scan_number_;

@@ -58,6 +58,7 @@ enum class FaultCode : std::uint16_t {
   overrun = 2,         ///< OverrunRule::stop, and a start could not be kept
   program_failed = 3,  ///< a run-time fault in the program
   other_cycle = 4,     ///< another cycle of the same PLC has a fault
+  io_failed = 5,       ///< inputs are stale, and the driver's configuration makes that a fault
 };
 
 struct Fault {
@@ -90,6 +91,10 @@ class ScanTask {
   /// A fault that comes from outside the cycle: enter_fault is the next step, in a wait and in STOP, too. A
   /// fault that is there already stays, and what was ordered to end it is void.
   void halt(FaultCode code) noexcept;
+  /// Period, overrun rule and watchdog's limit of the next scan on; the grid goes on from its next point, the
+  /// counts are kept. All else stays as it was made.
+  /// @param config  one that make() takes
+  void reconfigure(const ScanConfig& config) noexcept { next_config_ = config; }
 
   [[nodiscard]] RunMode mode() const noexcept { return mode_; }
   [[nodiscard]] const std::optional<Fault>& fault() const noexcept { return fault_; }
@@ -113,6 +118,7 @@ class ScanTask {
   [[nodiscard]] ScanStep end_scan() noexcept;
 
   ScanConfig config_;
+  std::optional<ScanConfig> next_config_;
   ScanPeriod period_;
   Watchdog watchdog_;
   ScanTimes scan_times_;

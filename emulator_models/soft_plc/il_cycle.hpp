@@ -1,0 +1,47 @@
+// An instruction-list program as the body of a cycle, with its process image.
+//
+// A slice is a whole run of the program, which its budget of instructions bounds. Where IlMachine comes to run in
+// slices of its own, execute() is the place to pass `unfinished` on.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "emulator_models/soft_plc/cycle_body.hpp"
+#include "emulator_models/soft_plc/il_machine.hpp"
+
+namespace emulator_models::soft_plc {
+
+/// Whether an instruction writes its operand, for all that has to know who writes what.
+[[nodiscard]] bool writes_operand(const Instruction& instruction) noexcept;
+/// The bytes that the operand of an instruction covers.
+[[nodiscard]] Section operand_section(const Instruction& instruction) noexcept;
+
+class IlCycle final : public CycleBody {
+ public:
+  /// @param program  whose image needs do not exceed the bounds of cycle_body.hpp
+  explicit IlCycle(IlProgram program);
+
+  CycleImage image() noexcept override { return {inputs_, outputs_, memory_}; }
+  std::span<const std::byte> output_mask() const noexcept override { return output_mask_; }
+  void start(StartKind kind) noexcept override;
+  Progress execute(const ScanStep& step) noexcept override;
+  void give_up_scan() noexcept override {}
+
+  /// From any thread.
+  /// @return the latest run-time fault since the last start
+  [[nodiscard]] std::optional<RunTimeFault> run_time_fault() const noexcept;
+
+ private:
+  IlProgram program_;
+  IlMachine machine_;
+  std::vector<std::byte> inputs_;
+  std::vector<std::byte> outputs_;
+  std::vector<std::byte> memory_;
+  std::vector<std::byte> output_mask_;
+  mutable std::mutex mutex_;
+  std::optional<RunTimeFault> fault_;  ///< guarded by mutex_
+};
+
+}  // namespace emulator_models::soft_plc

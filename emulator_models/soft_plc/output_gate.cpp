@@ -1,0 +1,48 @@
+#include "emulator_models/soft_plc/output_gate.hpp"
+
+namespace emulator_models::soft_plc {
+
+std::uint64_t OutputGate::open(bool hold_outputs) noexcept {
+  const std::lock_guard lock{mutex_};
+  if (open_ && !hold_outputs) outputs_ = safe_;
+  open_ = true;
+  return ++epoch_;
+}
+
+bool OutputGate::commit(std::uint64_t run, std::span<const std::byte> mask,
+                        std::span<const std::byte> outputs) noexcept {
+  const std::lock_guard lock{mutex_};
+  if (!open_ || run != epoch_) {
+    ++dropped_commits_count_;
+    return false;
+  }
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    outputs_[i] = (outputs_[i] & ~mask[i]) | (outputs[i] & mask[i]);
+  return true;
+}
+
+bool OutputGate::close(std::uint64_t run) noexcept {
+  const std::lock_guard lock{mutex_};
+  if (!open_ || run != epoch_) return false;
+  open_ = false;
+  ++epoch_;
+  outputs_ = safe_;
+  return true;
+}
+
+OutputGate::Frame OutputGate::frame() const noexcept {
+  const std::lock_guard lock{mutex_};
+  return {epoch_, outputs_};
+}
+
+bool OutputGate::is_open() const noexcept {
+  const std::lock_guard lock{mutex_};
+  return open_;
+}
+
+std::uint64_t OutputGate::dropped_commits_count() const noexcept {
+  const std::lock_guard lock{mutex_};
+  return dropped_commits_count_;
+}
+
+}  // namespace emulator_models::soft_plc
