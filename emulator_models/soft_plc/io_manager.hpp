@@ -28,14 +28,14 @@ namespace emulator_models::soft_plc {
 
 struct DriverConfig {
   std::string name;
-  Section inputs;  ///< of %I; within inputs_bytes_max, apart from those of other drivers
+  Section inputs{};  ///< of %I; within inputs_bytes_max, apart from those of other drivers
   std::chrono::nanoseconds period{std::chrono::milliseconds{1}};  ///< above 0
   std::chrono::nanoseconds late_after{
       std::chrono::milliseconds{100}};  ///< since the latest good exchange; above 0
   std::uint32_t failures_max = 3;       ///< in a row; at least 1
   bool stale_is_fault = false;
   /// Bit of %I, counted from %IX0.0, that tells the program that the inputs are stale; in no driver's section.
-  std::optional<std::size_t> stale_bit;
+  std::optional<std::size_t> stale_bit{};
 };
 
 struct DriverState {

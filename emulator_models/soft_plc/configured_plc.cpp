@@ -1,0 +1,103 @@
+#include "emulator_models/soft_plc/configured_plc.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "emulator_models/soft_plc/il_cycle.hpp"
+
+namespace emulator_models::soft_plc {
+namespace {
+
+bool is_same(const ConfiguredDriver& a, const ConfiguredDriver& b) {
+  return a.kind == b.kind && a.config.name == b.config.name && a.config.inputs == b.config.inputs &&
+         a.config.period == b.config.period && a.config.late_after == b.config.late_after &&
+         a.config.failures_max == b.config.failures_max &&
+         a.config.stale_is_fault == b.config.stale_is_fault && a.config.stale_bit == b.config.stale_bit;
+}
+
+}  // namespace
+
+std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfiguration& next) {
+  if (old.threading != next.threading || old.realtime != next.realtime) return "threads or realtime";
+  if (old.slice_intervals != next.slice_intervals) return "slice_intervals_ms";
+  if (old.cycles.size() != next.cycles.size()) return "the number of cycles";
+  for (std::size_t i = 0; i < next.cycles.size(); ++i) {
+    const ConfiguredCycle& a = old.cycles[i];
+    const ConfiguredCycle& b = next.cycles[i];
+    if (a.name != b.name) return "the name of cycle " + a.name;
+    if (a.source != b.source) return "the program of cycle " + a.name;
+    if (a.config.priority != b.config.priority) return "the priority of cycle " + a.name;
+    if (a.sends != b.sends) return "what cycle " + a.name + " sends";
+    if (a.config.scan.outputs_in_stop != b.config.scan.outputs_in_stop) return "outputs_in_stop";
+  }
+  if (!std::ranges::equal(old.drivers, next.drivers, is_same)) return "the drivers";
+  return {};
+}
+
+ConfiguredPlc::ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock)
+    : file_name_{std::move(file_name)},
+      reader_{std::move(reader)},
+      factory_{std::move(factory)},
+      clock_{clock} {}
+
+ConfiguredPlc::~ConfiguredPlc() {
+  if (plc_) plc_->gateway().close();
+}
+
+tl::expected<void, std::string> ConfiguredPlc::reload(std::string_view text) {
+  auto next = parse_configuration(text, file_name_, reader_);
+  if (!next) return tl::unexpected{next.error()};
+  const std::lock_guard lock{mutex_};
+  const std::string change = plc_ ? change_that_needs_stop(configuration_, *next) : "all";
+  if (change.empty()) {
+    std::vector<ScanConfig> scans;
+    for (const ConfiguredCycle& cycle : next->cycles) scans.push_back(cycle.config.scan);
+    if (auto done = plc_->reconfigure(scans, next->gateway); !done) return done;
+  } else {
+    if (plc_ && !plc_->is_stopped())
+      return tl::unexpected{file_name_ + ": changes " + change +
+                            ", which cannot be done in RUN; order STOP, load it again, and order RUN"};
+    if (auto built = build(*next); !built) return built;
+  }
+  configuration_ = std::move(*next);
+  return {};
+}
+
+tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next) {
+  SoftPlcSetup setup;
+  setup.slice_intervals = next.slice_intervals;
+  setup.gateway = next.gateway;
+  for (const ConfiguredCycle& cycle : next.cycles)
+    setup.cycles.push_back({cycle.name, cycle.config, cycle.sends, std::make_unique<IlCycle>(cycle.program)});
+  for (const ConfiguredDriver& driver : next.drivers) {
+    auto made = factory_(driver);
+    if (!made)
+      return tl::unexpected{file_name_ + ": driver " + driver.config.name + ": there is no kind \"" +
+                            driver.kind + "\" in this program"};
+    setup.drivers.push_back({driver.config, std::move(made)});
+  }
+  auto plc = SoftPlc::make(std::move(setup), clock_.now());
+  if (!plc) return tl::unexpected{file_name_ + ": " + plc.error()};
+  if (plc_) plc_->gateway().close();
+  threads_.reset();
+  plc_ = std::move(*plc);
+  threads_ = std::make_unique<PlcThreads>(*plc_, clock_, next.threading, next.realtime);
+  return {};
+}
+
+std::shared_ptr<SoftPlc> ConfiguredPlc::plc() const {
+  const std::lock_guard lock{mutex_};
+  return plc_;
+}
+
+PlcConfiguration ConfiguredPlc::configuration() const {
+  const std::lock_guard lock{mutex_};
+  return configuration_;
+}
+
+std::string ConfiguredPlc::realtime_refusal() const {
+  const std::lock_guard lock{mutex_};
+  return threads_ ? threads_->realtime_refusal() : std::string{};
+}
+
+}  // namespace emulator_models::soft_plc

@@ -1,0 +1,60 @@
+// A soft PLC as its configuration says, and the change to another configuration while it works.
+//
+// While in RUN may change: period, watchdog's limit and overrun rule of a cycle, limits of the gateway, archive and real-time
+// data settings. They count from the next scan of each cycle on. All else needs STOP: then the PLC is built anew.
+//
+// Invariants
+//   I1  a configuration that is bad, or that needs a STOP which is not there, changes nothing: the old one goes on.
+//   I2  what comes over the wire takes the same way as a file, once its sum is right.
+// Any thread; reload() holds up no scan.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+#include "emulator_models/soft_plc/plc_configuration.hpp"
+
+namespace emulator_models::soft_plc {
+
+/// @return a driver of the kind, or nullptr if there is no such kind
+using DriverFactory = std::function<std::unique_ptr<IoDriver>(const ConfiguredDriver&)>;
+
+/// @return what has changed that needs a STOP, "the program of cycle fast"; empty if nothing
+[[nodiscard]] std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfiguration& next);
+
+class ConfiguredPlc {
+ public:
+  /// Without a PLC until the first reload.
+  /// @param file_name  stands in front of errors; programs are looked for in its folder
+  ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock);
+  ConfiguredPlc(const ConfiguredPlc&) = delete;
+  ConfiguredPlc& operator=(const ConfiguredPlc&) = delete;
+  ~ConfiguredPlc();
+
+  /// @return nothing; or why the old configuration goes on
+  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text);
+  /// The PLC of now; one that was replaced refuses what is asked of its gateway. None before the first reload.
+  [[nodiscard]] std::shared_ptr<SoftPlc> plc() const;
+  [[nodiscard]] PlcConfiguration configuration() const;
+  [[nodiscard]] std::string realtime_refusal() const;
+
+ private:
+  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next);
+
+  const std::string file_name_;
+  const FileReader reader_;
+  const DriverFactory factory_;
+  PlcClock& clock_;
+  mutable std::mutex mutex_;
+  // All guarded by mutex_.
+  PlcConfiguration configuration_;
+  std::shared_ptr<SoftPlc> plc_;
+  std::unique_ptr<PlcThreads> threads_;
+};
+
+}  // namespace emulator_models::soft_plc

@@ -1,0 +1,139 @@
+// The configuration is good as a whole or refused as a whole, and may change while the PLC works.
+#include "emulator_models/soft_plc/plc_configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <thread>
+
+#include "emulator_models/soft_plc/configured_plc.hpp"
+
+namespace emulator_models::soft_plc {
+namespace {
+
+using namespace std::chrono_literals;
+
+const std::string good =
+    "[plc]\n"
+    "threads = \"per-cycle\"\n"
+    "[[cycle]]\n"
+    "name = \"a\"\n"
+    "program = \"a.il\"\n"
+    "period_ms = 1\n";
+const std::string program = "PROGRAM p\nVAR w AT %MW8 : INT; END_VAR\nLD w\nADD 1\nST w\nEND_PROGRAM\n";
+
+std::optional<std::string> read_source(const std::string& path) {
+  const std::map<std::string, std::string> files{
+      {"dir/a.il", program}, {"dir/b.il", program}, {"dir/bad.il", "PROGRAM p\nADD 1\nEND_PROGRAM\n"}};
+  const auto found = files.find(path);
+  return found == files.end() ? std::nullopt : std::optional{found->second};
+}
+
+std::string refusal(const std::string& text) {
+  const auto parsed = parse_configuration(text, "dir/plc.toml", read_source);
+  return parsed ? "taken" : parsed.error();
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+TEST(PlcConfiguration, what_is_left_out_has_its_default) {
+  const auto parsed = parse_configuration(good, "dir/plc.toml", read_source).value();
+  EXPECT_EQ(parsed.threading, PlcThreading::per_cycle);
+  EXPECT_EQ(parsed.cycles[0].config.scan.watchdog_limit, 150ms);
+  EXPECT_EQ(parsed.cycles[0].config.scan.overrun, OverrunRule::skip);
+  EXPECT_EQ(parsed.gateway.queue_max, 32U);
+  EXPECT_TRUE(parsed.archive.path.empty());
+}
+
+TEST(PlcConfiguration, each_mistake_is_refused_with_its_place_and_the_way_out) {
+  EXPECT_EQ(
+      refusal(good + "periode_ms = 1\n"),
+      "dir/plc.toml:7:1: [[cycle]] has no key periode_ms; known here: name, overrun, period_ms, priority, "
+      "program, sends, watchdog_ms");
+  EXPECT_EQ(refusal(replaced(good, "= 1", "= \"1\"")),
+            "dir/plc.toml:6:13: period_ms must be an integer from 0 to 3600000");
+  EXPECT_EQ(refusal(good + "watchdog_ms = 0\n"),
+            "dir/plc.toml:7:15: watchdog_ms must be an integer from 1 to 3600000");
+  EXPECT_EQ(refusal(good + "overrun = \"wait\"\n"),
+            "dir/plc.toml:7:11: overrun must be one of \"skip\", \"stop\", \"catch-up\"");
+  EXPECT_EQ(refusal(replaced(good, "a.il", "none.il")),
+            "dir/plc.toml:5:11: dir/none.il cannot be read; check the path, which is relative to this file");
+  EXPECT_EQ(refusal(replaced(good, "a.il", "bad.il"))
+                .rfind("dir/plc.toml:5:11: does not compile: dir/bad.il:2:", 0),
+            0U);
+  EXPECT_EQ(refusal(good + "= 3\n").rfind("dir/plc.toml:7:1: ", 0), 0U);
+  EXPECT_EQ(refusal(good + "[archive]\nsignals = [\"%QZ1\"]\n").rfind("dir/plc.toml:8:11: %QZ1: ", 0), 0U);
+  EXPECT_EQ(refusal("[plc]\n").rfind("dir/plc.toml:1:1: a PLC has 1 to 32 cycles", 0), 0U);
+}
+
+TEST(PlcConfiguration,
+     a_program_that_writes_a_word_of_another_cycle_is_refused_with_the_line_of_the_program) {
+  const std::string two = good + "[[cycle]]\nname = \"b\"\nprogram = \"b.il\"\nperiod_ms = 1\n";
+  EXPECT_EQ(refusal(two), "taken");
+  EXPECT_EQ(refusal(two + "sends = { first_word = 8, words = 1 }\n"),
+            "dir/plc.toml:5:11: dir/a.il:5:1: writes a word that cycle b sends; only its owner may write it");
+}
+
+TEST(PlcConfiguration, no_cut_of_a_good_file_does_harm) {
+  for (std::size_t length = 0; length < good.size(); ++length)
+    static_cast<void>(parse_configuration(good.substr(0, length), "dir/plc.toml", read_source));
+}
+
+TEST(PlcConfiguration, the_example_of_the_notes_is_good) {
+  const auto text = read_file(EXAMPLE_CONFIGURATION);
+  ASSERT_TRUE(text);
+  const auto parsed = parse_configuration(*text, EXAMPLE_CONFIGURATION, read_file);
+  ASSERT_TRUE(parsed) << parsed.error();
+  EXPECT_EQ(parsed->cycles[1].name, "slow");
+  EXPECT_EQ(parsed->drivers[0].config.stale_bit, 63U * 8);
+}
+
+struct Configured {
+  SteadyPlcClock clock;
+  ConfiguredPlc plc{"dir/plc.toml", read_source, [](const ConfiguredDriver&) { return nullptr; }, clock};
+};
+
+// I1
+TEST(ConfiguredPlc, a_bad_configuration_changes_nothing_and_the_old_one_goes_on) {
+  Configured rig;
+  ASSERT_TRUE(rig.plc.reload(good));
+  const auto before = rig.plc.plc();
+  ASSERT_TRUE(before->order_run(StartKind::cold));
+  EXPECT_FALSE(rig.plc.reload(good + "nonsense"));
+  EXPECT_EQ(rig.plc.plc(), before);
+  EXPECT_FALSE(before->is_stopped());
+}
+
+TEST(ConfiguredPlc, a_period_may_change_in_RUN_and_a_name_only_in_STOP) {
+  Configured rig;
+  ASSERT_TRUE(rig.plc.reload(good));
+  const auto plc = rig.plc.plc();
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  EXPECT_TRUE(rig.plc.reload(replaced(good, "= 1", "= 2")));
+  EXPECT_EQ(rig.plc.configuration().cycles[0].config.scan.period, 2ms);
+  const std::string renamed = replaced(good, "\"a\"", "\"c\"");
+  EXPECT_EQ(rig.plc.reload(renamed).error(),
+            "dir/plc.toml: changes the name of cycle a, which cannot be done in RUN; order STOP, load it "
+            "again, and "
+            "order RUN");
+  EXPECT_EQ(rig.plc.plc(), plc);
+  plc->order_stop();
+  while (!plc->is_stopped()) std::this_thread::yield();
+  ASSERT_TRUE(rig.plc.reload(renamed));
+  EXPECT_EQ(rig.plc.plc()->name(0), "c");
+  EXPECT_EQ(plc->gateway().submit({.cycle = 0, .items = {{.section = {0, 1}, .written = {}}}}).error(),
+            GatewayError::closed);
+}
+
+TEST(ConfiguredPlc, a_driver_of_an_unknown_kind_is_refused) {
+  Configured rig;
+  EXPECT_NE(rig.plc.reload(good + "[[driver]]\nname = \"d\"\nkind = \"x\"\nperiod_ms = 1\n")
+                .error()
+                .find("no kind \"x\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace emulator_models::soft_plc
