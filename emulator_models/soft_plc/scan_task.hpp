@@ -101,6 +101,8 @@ class ScanTask {
   /// Of whole scans in RUN: from the start of system analysis to the end of write outputs.
   [[nodiscard]] const ScanTimes& scan_times() const noexcept { return scan_times_; }
   [[nodiscard]] const ScanPeriod& period() const noexcept { return period_; }
+  /// Whether a step of a scan was the latest one.
+  [[nodiscard]] bool is_in_scan() const noexcept { return action_ != ScanAction::wait; }
   /// Whether next(now) has something to say but wait: the end of a scan, or a step.
   [[nodiscard]] bool is_ready(std::chrono::nanoseconds now) const noexcept;
   /// Whether it would be enter_fault, because of halt() or of the watchdog.

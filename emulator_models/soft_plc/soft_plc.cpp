@@ -181,7 +181,8 @@ nanoseconds SoftPlc::supervise(nanoseconds now) noexcept {
     has_expired = has_expired || (!cycle.halt_pending && scheduler_.cycle(i).is_urgent(now));
     // A scan that is yet to begin has its limit no earlier than this.
     next = std::min(next, now + cycle.config.watchdog_limit + nanoseconds{1});
-    if (cycle.limit && *cycle.limit >= now) next = std::min(next, *cycle.limit + nanoseconds{1});
+    if (cycle.limit && *cycle.limit >= now && scheduler_.cycle(i).is_in_scan())
+      next = std::min(next, *cycle.limit + nanoseconds{1});
   }
   if (has_expired) {
     stop_all(now, FaultCode::other_cycle);
