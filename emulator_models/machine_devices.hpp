@@ -2,8 +2,6 @@
 // a table), the terminals to which the machine is wired, and the words that the program keeps for itself.
 #pragma once
 
-#include <cstddef>
-
 #include "protocol/fx/address_map.hpp"
 
 namespace emulator_models::machine {
@@ -36,9 +34,8 @@ inline constexpr Device alarm_number{DeviceKind::d, 120};
 // The program's own words.
 inline constexpr Device selected_tool{DeviceKind::d, 110};
 inline constexpr Device tool_in_spindle{DeviceKind::d, 111};
-/// Speed demanded of the spindle drive, 1/min; goes to an analog output.
+/// Speed demanded of the spindle drive, 1/min: stands for an analog output.
 inline constexpr Device spindle_speed{DeviceKind::d, 112};
-inline constexpr std::size_t spindle_speed_output = 0;
 
 // Outputs. Numbers are indices: 8 is Y10.
 inline constexpr Device spindle_clockwise{DeviceKind::y, 0};

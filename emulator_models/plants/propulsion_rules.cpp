@@ -151,10 +151,14 @@ void PropulsionRules::judge_speed() noexcept {
   const std::int32_t setpoint = scan_.word(wire::setpoint);
   const bool free = scan_.out(wire::run) && before_.out(wire::run) && !scan_.on(wire::speed_limited);
   if (free) demand(ramp, std::abs(setpoint - before_.word(wire::setpoint)) <= 10);
-  // Beyond the limit goes what the present error asks for, once proportionally and once as the last
-  // integration; what is more has been stored up.
-  const std::int32_t error = std::abs(setpoint - scan_.word(wire::speed));
-  demand(anti_windup, std::abs(scan_.word(wire::unlimited)) <= wire::full_permille + error + error / 2 + 50);
+  // In saturation the integral takes in less than the error, so that it ends where the limit is.
+  const std::int32_t unlimited = scan_.word(wire::unlimited);
+  if (std::abs(unlimited) > wire::full_permille) {
+    const std::int32_t direction = unlimited > 0 ? 1 : -1;
+    const std::int32_t growth = direction * (scan_.word(wire::integral) - before_.word(wire::integral));
+    const std::int32_t error = direction * (setpoint - scan_.word(wire::speed));
+    demand(anti_windup, growth <= 0 || growth < error);
+  }
 }
 
 }  // namespace emulator_models

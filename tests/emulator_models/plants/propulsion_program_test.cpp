@@ -67,10 +67,10 @@ TEST_F(PropulsionProgramTest, starts_with_oil_pressure_and_follows_the_lever) {
   rig.start();
   EXPECT_TRUE(rig.out(wire::run) && rig.out(wire::run_lamp) && rig.on(wire::running));
   rig.plant.move_lever(600);
-  rig.scan_for(30s);
+  rig.scan_for(60s);
   EXPECT_NEAR(rig.plant.shaft_permille(), 600, 5);
   rig.plant.move_lever(-400);
-  rig.scan_for(40s);
+  rig.scan_for(60s);
   EXPECT_NEAR(rig.plant.shaft_permille(), -400, 5);
 }
 
