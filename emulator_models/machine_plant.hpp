@@ -10,6 +10,7 @@
 // Left out: faults of the drives, levels, pressures, the position of the magazine.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,8 @@ struct Terminals {
 
   std::bitset<points_count> inputs;
   std::bitset<points_count> outputs;
+  std::array<std::uint16_t, 8> analog_inputs{};   ///< wired to D200-D207 (fx_plc.hpp)
+  std::array<std::uint16_t, 8> analog_outputs{};  ///< D210-D217
   std::uint16_t spindle_speed_rpm = 0;
 };
 
