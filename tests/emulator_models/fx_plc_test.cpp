@@ -66,7 +66,7 @@ TEST(FxPlc, an_endless_loop_is_caught_by_the_watchdog_within_its_limit_and_a_sli
 }
 
 TEST(FxPlc, an_order_of_run_clears_a_fault_and_starts_with_a_first_scan) {
-  FxPlcRig rig{endless_variables, endless_when_x0, {.slice_instructions = 1000}};
+  FxPlcRig rig{endless_variables, endless_when_x0, {.watchdog_limit = 200ms, .slice_instructions = 1000}};
   rig.scan();
   rig.set("M0", 1);
   rig.scan();
@@ -84,11 +84,11 @@ TEST(FxPlc, an_order_of_run_clears_a_fault_and_starts_with_a_first_scan) {
 }
 
 TEST(FxPlc, a_run_time_fault_leaves_its_code_and_its_line) {
-  FxPlcRig rig{"d AT D0 : INT; r AT D1 : INT;", "LD 1\nDIV d\nST r"};
+  FxPlcRig rig{"d AT D0 : INT; q AT D1 : INT;", "LD 1\nST q\nLD q\nDIV d\nST q"};
   rig.scan();
   EXPECT_EQ(rig.get("M8067"), 1U);
   EXPECT_EQ(rig.get("D8067"), 6706U);
-  EXPECT_EQ(rig.get("D8069"), 3U);
+  EXPECT_EQ(rig.get("D8069"), 5U);
   EXPECT_TRUE(rig.plc.program_error_lamp());
   ASSERT_TRUE(rig.plc.program_fault().has_value());
 }
