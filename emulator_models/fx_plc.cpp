@@ -113,7 +113,7 @@ void FxPlc::initialise(StartKind start) noexcept {
   const bool cold = start == StartKind::cold;
   machine_.start(cold ? soft_plc::IlMachine::Start::cold : soft_plc::IlMachine::Start::warm);
   // At power-up the memory is clear, but for what a request has written before the first scan.
-  if (now_ == *power_up_) return;
+  if (!std::exchange(has_run_, true)) return;
   if (cold) {
     clear_all_but_special(memory());
   } else if (memory().get(special_m(8033)) == 0) {

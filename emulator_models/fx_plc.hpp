@@ -95,10 +95,10 @@ class FxPlc final : private soft_plc::ScanProgram {
   SteadyTime now_;
   WallTime wall_{};
   std::optional<SteadyTime> power_up_;
-  std::uint64_t shown_scans_count_ = 0;
   bool run_switch_ = true;
   bool run_switch_seen_ = true;
   bool cold_start_ordered_ = false;
+  bool has_run_ = false;
   std::optional<soft_plc::RunTimeFault> program_fault_;
   bool cpu_error_lamp_ = false;
   bool program_error_lamp_ = false;
