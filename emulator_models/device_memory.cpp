@@ -1,6 +1,8 @@
 #include "emulator_models/device_memory.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #include "protocol/check.hpp"
 #include "protocol/fx/device_ranges.hpp"
@@ -13,8 +15,19 @@ using protocol::fx::ByteLocation;
 using protocol::fx::Device;
 using protocol::fx::DeviceKind;
 
-constexpr std::uint32_t value_mask(unsigned width_bits) noexcept {
-  return width_bits == 32 ? 0xFFFF'FFFFU : (1U << width_bits) - 1U;
+static_assert(std::endian::native == std::endian::little, "words are copied, not assembled byte by byte");
+
+/// Bytes that `count` devices of a kind from number 0 on take.
+std::size_t bytes_of(DeviceKind kind, std::size_t count) noexcept {
+  constexpr std::size_t narrow_counters_count = protocol::fx::first_wide_counter;
+  switch (protocol::fx::width_bits({kind, 0})) {
+    case 1:
+      return (count + 7) / 8;
+    default:
+      if (kind == DeviceKind::c_value && count > narrow_counters_count)
+        return 2 * narrow_counters_count + 4 * (count - narrow_counters_count);
+      return 2 * count;
+  }
 }
 
 Device neighbour(Device first, unsigned index) noexcept {
@@ -27,8 +40,9 @@ DeviceMemory::DeviceMemory(protocol::fx::Model model) : model_{model} {
   const protocol::fx::DeviceRanges ranges = protocol::fx::ranges_of(model);
   std::size_t offset = 0;
   const auto place = [&](DeviceKind kind, std::uint16_t plain_count, std::uint16_t special_count) {
-    blocks_[static_cast<std::size_t>(kind)] = {offset, plain_count, special_count};
-    offset += std::size_t{plain_count} + special_count;
+    const std::size_t size = bytes_of(kind, std::size_t{plain_count} + special_count);
+    blocks_[static_cast<std::size_t>(kind)] = {offset, size, plain_count, special_count};
+    offset += size;
   };
   place(DeviceKind::x, ranges.x, 0);
   place(DeviceKind::y, ranges.y, 0);
@@ -39,21 +53,42 @@ DeviceMemory::DeviceMemory(protocol::fx::Model model) : model_{model} {
   place(DeviceKind::t_value, ranges.t, 0);
   place(DeviceKind::c_value, ranges.c, 0);
   place(DeviceKind::d, ranges.d, ranges.special);
-  values_.resize(offset);
+  bytes_.resize(offset);
 }
 
-std::size_t DeviceMemory::index_of(Device device) const noexcept {
+DeviceMemory::Place DeviceMemory::place_of(Device device) const noexcept {
   PLC_CHECK(protocol::fx::exists(device, model_));
   const Block& home = block(device.kind);
-  if (device.number < home.plain_count) return home.offset + device.number;
-  return home.offset + home.plain_count + device.number - protocol::fx::first_special_number;
+  const std::size_t index = device.number < home.plain_count ? device.number
+                                                             : std::size_t{home.plain_count} + device.number -
+                                                                   protocol::fx::first_special_number;
+  if (protocol::fx::width_bits(device) == 1)
+    return {static_cast<std::uint32_t>(home.offset + index / 8), static_cast<std::uint8_t>(index % 8)};
+  return {static_cast<std::uint32_t>(home.offset + bytes_of(device.kind, index)), 0};
 }
 
-std::uint32_t DeviceMemory::get(Device device) const noexcept { return values_[index_of(device)]; }
+std::uint32_t DeviceMemory::load(Place place, unsigned width_bits) const noexcept {
+  const std::byte* const from = bytes_.data() + place.byte_index;
+  if (width_bits == 1) return std::to_integer<std::uint32_t>(*from) >> place.bit_index & 1U;
+  std::uint32_t value = 0;
+  std::memcpy(&value, from, width_bits / 8);
+  return value;
+}
+
+std::uint32_t DeviceMemory::get(Device device) const noexcept {
+  return load(place_of(device), protocol::fx::width_bits(device));
+}
 
 void DeviceMemory::set(Device device, std::uint32_t value) noexcept {
+  const Place place = place_of(device);
   const unsigned width = protocol::fx::width_bits(device);
-  values_[index_of(device)] = width == 1 ? value != 0 : value & value_mask(width);
+  std::byte* const to = bytes_.data() + place.byte_index;
+  if (width == 1) {
+    const std::byte bit = std::byte{1} << place.bit_index;
+    *to = value != 0 ? *to | bit : *to & ~bit;
+  } else {
+    std::memcpy(to, &value, width / 8);
+  }
 }
 
 std::optional<std::byte> DeviceMemory::read_byte(std::uint16_t address, AddressSpace space) const noexcept {
@@ -85,25 +120,34 @@ bool DeviceMemory::write_byte(std::uint16_t address, AddressSpace space, std::by
   return true;
 }
 
+void DeviceMemory::clear(DeviceKind kind, std::uint16_t first_number, std::uint16_t count) noexcept {
+  const unsigned end = std::min(unsigned{first_number} + count, unsigned{block(kind).plain_count});
+  for (unsigned number = first_number; number < end; ++number) {
+    const Device device{kind, static_cast<std::uint16_t>(number)};
+    if (protocol::fx::exists(device, model_)) set(device, 0);
+  }
+}
+
 void DeviceMemory::clear_not_latched() noexcept {
   for (const DeviceKind kind : {DeviceKind::y, DeviceKind::m, DeviceKind::t_contact, DeviceKind::c_contact,
-                                DeviceKind::t_value, DeviceKind::c_value}) {
-    const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(block(kind).offset);
-    std::fill(begin, begin + block(kind).plain_count, 0U);
-  }
+                                DeviceKind::t_value, DeviceKind::c_value})
+    clear(kind, 0, block(kind).plain_count);
 }
 
 std::vector<Device> DeviceMemory::differences(const DeviceMemory& other) const {
   PLC_CHECK(other.model_ == model_);
   std::vector<Device> changed;
-  for (std::size_t kind = 0; kind < kinds_count; ++kind) {
-    const Block& home = blocks_[kind];
-    for (std::size_t i = 0; i < home.size(); ++i) {
-      if (values_[home.offset + i] == other.values_[home.offset + i]) continue;
-      const std::size_t number =
-          i < home.plain_count ? i : i - home.plain_count + protocol::fx::first_special_number;
-      changed.push_back({static_cast<DeviceKind>(kind), static_cast<std::uint16_t>(number)});
-    }
+  for (std::size_t i = 0; i < kinds_count; ++i) {
+    const auto kind = static_cast<DeviceKind>(i);
+    const Block& home = blocks_[i];
+    if (std::memcmp(bytes_.data() + home.offset, other.bytes_.data() + home.offset, home.size_bytes) == 0)
+      continue;
+    const auto look_at = [&](unsigned number) {
+      const Device device{kind, static_cast<std::uint16_t>(number)};
+      if (protocol::fx::exists(device, model_) && get(device) != other.get(device)) changed.push_back(device);
+    };
+    for (unsigned number = 0; number < home.plain_count; ++number) look_at(number);
+    for (unsigned k = 0; k < home.special_count; ++k) look_at(protocol::fx::first_special_number + k);
   }
   return changed;
 }

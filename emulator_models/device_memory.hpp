@@ -1,11 +1,20 @@
 // The devices of one PLC and their values; all zero at power-up. A plain value: no lock, no meaning of
 // special devices, no rule who may write what (fx_plc_emulator.hpp has these).
+//
+// The devices lie as the programming port shows them: bits eight to a byte, lowest number in bit 0, words of 2
+// bytes and counters from C200 on of 4, low byte first, the special ones of a kind behind the others. So a process
+// image is a part of bytes(), and a copy of the memory one memcpy.
+//
+// Invariants
+//   I1  a bit that the model has not is 0, unless who writes through bytes() sets it.
+//   I2  where a device lies depends on the model alone, and never changes.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "protocol/fx/address_map.hpp"
@@ -31,33 +40,51 @@ class DeviceMemory {
   /// @return whether a device lies there
   bool write_byte(std::uint16_t address, protocol::fx::AddressSpace space, std::byte value) noexcept;
 
-  /// What happens to the memory when the PLC goes from STOP to RUN: Y, T, C and the M below 8000 are cleared.
+  struct Place {
+    std::uint32_t byte_index = 0;  ///< in bytes()
+    std::uint8_t bit_index = 0;    ///< of a bit device
+  };
+  /// @param device  one that exists on the model
+  [[nodiscard]] Place place_of(protocol::fx::Device device) const noexcept;
+  /// The whole memory. The span, and pointers into it, hold until the memory is moved from or destroyed.
+  [[nodiscard]] std::span<std::byte> bytes() noexcept { return bytes_; }
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
+  /// X and Y, each from number 0 on, as parts of bytes().
+  [[nodiscard]] std::span<std::byte> inputs() noexcept { return part(protocol::fx::DeviceKind::x); }
+  [[nodiscard]] std::span<std::byte> outputs() noexcept { return part(protocol::fx::DeviceKind::y); }
+
+  /// Clears devices that are no special ones.
+  /// @param count  as many of them as the model has, at most
+  void clear(protocol::fx::DeviceKind kind, std::uint16_t first_number, std::uint16_t count) noexcept;
+
+  /// What happens to a memory without latched devices when the PLC goes from STOP to RUN: Y, T, C and the M below
+  /// 8000 are cleared.
   void clear_not_latched() noexcept;
 
   /// The devices whose values differ, in the order X, Y, M, S, T, C, D.
   [[nodiscard]] std::vector<protocol::fx::Device> differences(const DeviceMemory& other) const;
 
  private:
-  /// Where the devices of one kind lie in values_: those from 0 on, then the special ones.
+  /// Where the devices of one kind begin in bytes_.
   struct Block {
     std::size_t offset = 0;
+    std::size_t size_bytes = 0;
     std::uint16_t plain_count = 0;
     std::uint16_t special_count = 0;
-
-    [[nodiscard]] std::size_t size() const noexcept { return std::size_t{plain_count} + special_count; }
   };
   static constexpr std::size_t kinds_count = 9;
 
   [[nodiscard]] const Block& block(protocol::fx::DeviceKind kind) const noexcept {
     return blocks_[static_cast<std::size_t>(kind)];
   }
-  [[nodiscard]] std::size_t index_of(protocol::fx::Device device) const noexcept;
+  [[nodiscard]] std::span<std::byte> part(protocol::fx::DeviceKind kind) noexcept {
+    return std::span{bytes_}.subspan(block(kind).offset, block(kind).size_bytes);
+  }
+  [[nodiscard]] std::uint32_t load(Place place, unsigned width_bits) const noexcept;
 
   protocol::fx::Model model_;
   std::array<Block, kinds_count> blocks_;
-  /// One element a device. Bits could be packed; a PLC of 23,000 devices takes 92 kB this way, which is
-  /// little and keeps every access a plain load.
-  std::vector<std::uint32_t> values_;
+  std::vector<std::byte> bytes_;
 };
 
 }  // namespace emulator_models

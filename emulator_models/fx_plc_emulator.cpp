@@ -63,9 +63,17 @@ bool may_be_written(std::uint16_t address, protocol::fx::Model model, AddressSpa
 FxPlcEmulator::FxPlcEmulator(protocol::fx::Model model) : memory_{model} { set_power_up_values(memory_); }
 
 FrameBytes FxPlcEmulator::process(std::span<const std::byte> request) noexcept {
+  const std::lock_guard lock{mutex_};
+  return process_locked(request);
+}
+
+FrameBytes FxPlcEmulator::process(std::span<const std::byte> request, const LockedMemory&) noexcept {
+  return process_locked(request);
+}
+
+FrameBytes FxPlcEmulator::process_locked(std::span<const std::byte> request) noexcept {
   if (request.size() == 1 && request.front() == protocol::fx::enq) return single(protocol::fx::ack);
   const auto decoded = protocol::fx::decode_request(request);
-  const std::lock_guard lock{mutex_};
   if (decoded) return execute(*decoded);
   const auto trouble = trouble_of(decoded.error());
   return trouble ? refuse(*trouble) : FrameBytes{};

@@ -27,6 +27,25 @@ class FxPlcEmulator final : public IPlcEmulator {
   /// @return ACK to ENQ; data, ACK or NAK to a frame; nothing to anything else
   [[nodiscard]] protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override;
 
+  /// The memory, locked as long as this lives: everybody else waits. Who has it must not call another member of
+  /// the same emulator but the process() below.
+  class LockedMemory {
+   public:
+    [[nodiscard]] DeviceMemory& operator*() const noexcept { return memory_; }
+    [[nodiscard]] DeviceMemory* operator->() const noexcept { return &memory_; }
+
+   private:
+    friend FxPlcEmulator;
+    LockedMemory(std::mutex& mutex, DeviceMemory& memory) : lock_{mutex}, memory_{memory} {}
+
+    std::unique_lock<std::mutex> lock_;
+    DeviceMemory& memory_;
+  };
+  [[nodiscard]] LockedMemory lock() { return {mutex_, memory_}; }
+  /// process() for who has the memory locked.
+  [[nodiscard]] protocol::fx::FrameBytes process(std::span<const std::byte> request,
+                                                 const LockedMemory& memory) noexcept;
+
   /// Calls `action` with the memory, locked: all that it reads belongs together.
   /// @param action  callable with a DeviceMemory&; must not call this object again
   template <class Action>
@@ -43,6 +62,7 @@ class FxPlcEmulator final : public IPlcEmulator {
   [[nodiscard]] std::uint16_t read_word(protocol::fx::Device device) const noexcept;
 
  private:
+  [[nodiscard]] protocol::fx::FrameBytes process_locked(std::span<const std::byte> request) noexcept;
   [[nodiscard]] protocol::fx::FrameBytes execute(const protocol::fx::Request& request) noexcept;
   [[nodiscard]] protocol::fx::FrameBytes read(const protocol::fx::Request& request) noexcept;
   [[nodiscard]] protocol::fx::FrameBytes write(const protocol::fx::Request& request) noexcept;

@@ -48,17 +48,52 @@ constexpr std::array<BlockParameter, 4> timer_parameters{{{"IN", b, offsetof(Tim
                                                           {"Q", b, offsetof(Timer, q), false},
                                                           {"ET", t, offsetof(Timer, et), false}}};
 
+constexpr BlockParameter contact_output{"Q", b, 0, false, ParameterHome::contact};
+constexpr BlockParameter value_output{"CV", i, 0, false, ParameterHome::value};
+constexpr std::array<BlockParameter, 4> device_timer_parameters{{{"IN", b, offsetof(DeviceTimer, in), true},
+                                                                 {"PV", i, offsetof(DeviceTimer, pv), true},
+                                                                 contact_output,
+                                                                 value_output}};
+constexpr std::array<BlockParameter, 5> retentive_timer_parameters{
+    {{"IN", b, offsetof(DeviceTimer, in), true},
+     {"R", b, offsetof(DeviceTimer, r), true},
+     {"PV", i, offsetof(DeviceTimer, pv), true},
+     contact_output,
+     value_output}};
+constexpr std::array<BlockParameter, 5> device_counter_parameters{
+    {{"CU", b, offsetof(DeviceCounter, cu), true},
+     {"R", b, offsetof(DeviceCounter, r), true},
+     {"PV", i, offsetof(DeviceCounter, pv), true},
+     contact_output,
+     value_output}};
+constexpr std::array<BlockParameter, 5> wide_counter_parameters{
+    {{"CU", b, offsetof(WideDeviceCounter, cu), true},
+     {"R", b, offsetof(WideDeviceCounter, r), true},
+     {"PV", ElementaryType::dint, offsetof(WideDeviceCounter, pv), true},
+     contact_output,
+     {"CV", ElementaryType::dint, 0, false, ParameterHome::value}}};
+
+struct RetentiveTimer : DeviceTimer {
+  void call(std::byte* memory, std::chrono::nanoseconds now) noexcept { call_retentive(memory, now); }
+};
+
 template <typename Block>
-void construct_block(std::byte* instance) noexcept {
+void construct_block(std::byte* instance, const BlockDevices& devices) noexcept {
   static_assert(std::is_trivially_copyable_v<Block>, "instances are started anew by copying bytes");
   static_assert(alignof(Block) <= block_alignment);
-  new (instance) Block{};
+  auto* const block = new (instance) Block{};
+  if constexpr (requires { block->devices; }) block->devices = devices;
 }
 
 template <typename Block>
-void call_block(std::byte* instance, std::chrono::nanoseconds now) noexcept {
+void call_block(std::byte* instance, [[maybe_unused]] std::byte* memory,
+                [[maybe_unused]] std::chrono::nanoseconds now) noexcept {
   auto& block = *std::launder(reinterpret_cast<Block*>(instance));
-  if constexpr (requires { block.call(now); }) {
+  if constexpr (requires { block.call(memory, now); }) {
+    block.call(memory, now);
+  } else if constexpr (requires { block.call(memory); }) {
+    block.call(memory);
+  } else if constexpr (requires { block.call(now); }) {
     block.call(now);
   } else {
     block.call();
@@ -69,8 +104,8 @@ struct BlockFacts {
   std::string_view name;
   std::span<const BlockParameter> parameters;
   std::size_t bytes;
-  void (*construct)(std::byte*) noexcept;
-  void (*call)(std::byte*, std::chrono::nanoseconds) noexcept;
+  void (*construct)(std::byte*, const BlockDevices&) noexcept;
+  void (*call)(std::byte*, std::byte*, std::chrono::nanoseconds) noexcept;
 };
 
 template <typename Block>
@@ -79,23 +114,29 @@ constexpr BlockFacts facts(std::string_view name, std::span<const BlockParameter
 }
 
 /// In the order of BlockKind.
-constexpr std::array<BlockFacts, 10> blocks{facts<Sr>("SR", sr_parameters),
-                                            facts<Rs>("RS", rs_parameters),
-                                            facts<RTrig>("R_TRIG", r_trig_parameters),
-                                            facts<FTrig>("F_TRIG", f_trig_parameters),
-                                            facts<Ctu>("CTU", ctu_parameters),
-                                            facts<Ctd>("CTD", ctd_parameters),
-                                            facts<Ctud>("CTUD", ctud_parameters),
-                                            facts<Ton>("TON", timer_parameters<Ton>),
-                                            facts<Tof>("TOF", timer_parameters<Tof>),
-                                            facts<Tp>("TP", timer_parameters<Tp>)};
+constexpr std::array<BlockFacts, 14> blocks{
+    facts<Sr>("SR", sr_parameters),
+    facts<Rs>("RS", rs_parameters),
+    facts<RTrig>("R_TRIG", r_trig_parameters),
+    facts<FTrig>("F_TRIG", f_trig_parameters),
+    facts<Ctu>("CTU", ctu_parameters),
+    facts<Ctd>("CTD", ctd_parameters),
+    facts<Ctud>("CTUD", ctud_parameters),
+    facts<Ton>("TON", timer_parameters<Ton>),
+    facts<Tof>("TOF", timer_parameters<Tof>),
+    facts<Tp>("TP", timer_parameters<Tp>),
+    facts<DeviceTimer>("timer", device_timer_parameters),
+    facts<RetentiveTimer>("retentive timer", retentive_timer_parameters),
+    facts<DeviceCounter>("counter", device_counter_parameters),
+    facts<WideDeviceCounter>("32-bit counter", wide_counter_parameters)};
 
 const BlockFacts& facts_of(BlockKind kind) noexcept { return blocks[static_cast<std::size_t>(kind)]; }
 
 }  // namespace
 
 std::optional<BlockKind> block_kind(std::string_view upper_name) noexcept {
-  for (std::size_t index = 0; index < blocks.size(); ++index) {
+  constexpr auto declarable_count = static_cast<std::size_t>(BlockKind::device_timer);
+  for (std::size_t index = 0; index < declarable_count; ++index) {
     if (blocks[index].name == upper_name) return static_cast<BlockKind>(index);
   }
   return std::nullopt;
@@ -120,10 +161,12 @@ bool is_input_operator(std::string_view upper_operation) noexcept {
 
 std::size_t instance_bytes(BlockKind kind) noexcept { return facts_of(kind).bytes; }
 
-void construct(BlockKind kind, std::byte* instance) noexcept { facts_of(kind).construct(instance); }
+void construct(BlockKind kind, std::byte* instance, const BlockDevices& devices) noexcept {
+  facts_of(kind).construct(instance, devices);
+}
 
-void call(BlockKind kind, std::byte* instance, std::chrono::nanoseconds now) noexcept {
-  facts_of(kind).call(instance, now);
+void call(BlockKind kind, std::byte* instance, std::byte* memory, std::chrono::nanoseconds now) noexcept {
+  facts_of(kind).call(instance, memory, now);
 }
 
 }  // namespace emulator_models::soft_plc

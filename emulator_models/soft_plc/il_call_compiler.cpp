@@ -15,10 +15,6 @@ constexpr std::uint32_t kept_cr_slot = 0;  // calls of blocks do not stand in pa
 
 constexpr std::size_t formal_arguments_max = 16;  ///< each is looked for among all
 
-ValuePlace place_in(InstancePlace instance, const BlockParameter& parameter) noexcept {
-  return {parameter.type, Area::variables, instance.offset + parameter.offset, 0, {}};
-}
-
 Instruction call_of(InstancePlace instance) noexcept {
   return {Opcode::call_block, Area::variables, static_cast<std::uint8_t>(instance.kind), {}, instance.offset};
 }

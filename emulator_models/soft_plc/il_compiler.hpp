@@ -12,6 +12,7 @@
 
 #include <tl/expected.hpp>
 
+#include "emulator_models/soft_plc/il_address_map.hpp"
 #include "emulator_models/soft_plc/il_program.hpp"
 
 namespace emulator_models::soft_plc {
@@ -21,5 +22,7 @@ inline constexpr std::size_t source_bytes_max = 4'194'304;
 
 /// @return the program, which does not point into the source; or the first mistake
 [[nodiscard]] tl::expected<IlProgram, IlError> compile(std::string_view source);
+/// For a PLC with an address map of its own: the process image is what the map says.
+[[nodiscard]] tl::expected<IlProgram, IlError> compile(std::string_view source, const AddressMap& map);
 
 }  // namespace emulator_models::soft_plc

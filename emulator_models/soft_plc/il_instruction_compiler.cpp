@@ -36,8 +36,13 @@ bool is_zero(const Operand& operand) {
 }  // namespace
 
 InstructionCompiler::InstructionCompiler(IlProgram& program, const SymbolTable& symbols,
-                                         const SyntaxTree& tree)
-    : program_{program}, symbols_{symbols}, tree_{tree}, builder_{program}, labels_{tree.statements} {}
+                                         const SyntaxTree& tree, const AddressMap& map)
+    : program_{program},
+      map_{map},
+      symbols_{symbols},
+      tree_{tree},
+      builder_{program},
+      labels_{tree.statements} {}
 
 void InstructionCompiler::run() {
   int passes = 0;
@@ -357,7 +362,7 @@ bool InstructionCompiler::is_instance(const Operand& operand) const {
 
 ValuePlace InstructionCompiler::value_of(const Operand& operand) {
   if (operand.kind == Operand::Kind::direct_address)
-    return place_of_address(operand.text, operand.place, program_);
+    return place_of_address(operand.text, operand.place, map_, program_);
   const Symbol* const symbol = find(operand);
   if (symbol == nullptr) fail(operand.place, operand.text + " is not declared: add it to a VAR block");
   if (const auto* const value = std::get_if<ValuePlace>(symbol)) {
@@ -372,8 +377,7 @@ ValuePlace InstructionCompiler::value_of(const Operand& operand) {
                             "." + std::string{parameters_of(instance.kind).back().name});
   const BlockParameter* const parameter = parameter_of(instance.kind, operand.member);
   if (parameter == nullptr) fail(operand.place, block + " has no input or output " + operand.member);
-  return {parameter->type, Area::variables, instance.offset + parameter->offset, 0,
-          parameter->is_input ? "" : "an output of a function block"};
+  return place_in(instance, *parameter);
 }
 
 }  // namespace emulator_models::soft_plc

@@ -19,7 +19,8 @@ class InstructionCompiler {
   static constexpr int passes_max = 16;
 
   /// All must outlive the compiler. Throws IlFailure, as do all members.
-  InstructionCompiler(IlProgram& program, const SymbolTable& symbols, const SyntaxTree& tree);
+  InstructionCompiler(IlProgram& program, const SymbolTable& symbols, const SyntaxTree& tree,
+                      const AddressMap& map);
 
   void run();
 
@@ -75,6 +76,7 @@ class InstructionCompiler {
   [[nodiscard]] bool is_instance(const Operand& operand) const;
 
   IlProgram& program_;
+  const AddressMap& map_;
   const SymbolTable& symbols_;
   const SyntaxTree& tree_;
   CodeBuilder builder_;

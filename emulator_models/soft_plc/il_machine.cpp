@@ -45,6 +45,7 @@ void IlMachine::start(Start kind) noexcept {
   std::copy(program_.initial_variables.begin() + static_cast<std::ptrdiff_t>(kept),
             program_.initial_variables.end(), variables_.begin() + static_cast<std::ptrdiff_t>(kept));
   image_is_to_be_initialized_ = kind == Start::cold;
+  abandon_scan();
 }
 
 bool IlMachine::image_suffices(const ProcessImage& image) const noexcept {
@@ -70,6 +71,26 @@ void IlMachine::initialize(const ProcessImage& image) noexcept {
 tl::expected<std::uint64_t, RunTimeFault> IlMachine::run_scan(const ProcessImage& image,
                                                               std::chrono::nanoseconds now,
                                                               std::uint64_t budget) noexcept {
+  abandon_scan();
+  Progress progress{.now = now};
+  const auto end = run(image, progress, budget, budget);
+  if (!end) return tl::unexpected(end.error());
+  return progress.executed;
+}
+
+tl::expected<SliceEnd, RunTimeFault> IlMachine::run_slice(const ProcessImage& image,
+                                                          std::chrono::nanoseconds now,
+                                                          std::uint64_t slice_length,
+                                                          std::uint64_t budget) noexcept {
+  if (!suspended_) suspended_.emplace(Progress{.now = now});
+  const std::uint64_t slice_end = suspended_->executed + slice_length;
+  const auto end = run(image, *suspended_, std::min(slice_end, budget), budget);
+  if (!end || *end == SliceEnd::scan) abandon_scan();
+  return end;
+}
+
+tl::expected<SliceEnd, RunTimeFault> IlMachine::run(const ProcessImage& image, Progress& progress,
+                                                    std::uint64_t limit, std::uint64_t budget) noexcept {
   if (!image_suffices(image)) return tl::unexpected(RunTimeFault{FaultKind::image_too_small, {}});
   if (image_is_to_be_initialized_) initialize(image);
 
@@ -77,22 +98,27 @@ tl::expected<std::uint64_t, RunTimeFault> IlMachine::run_scan(const ProcessImage
   areas.read = {variables_.data(), reinterpret_cast<const std::byte*>(program_.constants.data()),
                 image.inputs.data(), image.outputs.data(), image.memory.data()};
   areas.write = {variables_.data(), nullptr, nullptr, image.outputs.data(), image.memory.data()};
-  std::array<std::uint64_t, nesting_max> slots{};
+  std::array<std::uint64_t, nesting_max> slots = progress.slots;
 
   const Instruction* const code = program_.code.data();
-  const Instruction* next = code;
+  const Instruction* next = code + progress.next;
   // Instructions are counted by straight pieces, at the jump that ends one: that keeps the count out of the
   // path of all others.
-  const Instruction* piece = code;
-  std::uint64_t executed = 0;
-  std::uint64_t acc = 0;
+  const Instruction* piece = next;
+  std::uint64_t executed = progress.executed;
+  std::uint64_t acc = progress.acc;
 
   const auto fault = [&](FaultKind kind) {
     return tl::unexpected(RunTimeFault{kind, program_.places[static_cast<std::size_t>(next - 1 - code)]});
   };
-  const auto piece_is_within_budget = [&] {
+  const auto piece_is_within_limit = [&] {
     executed += static_cast<std::uint64_t>(next - piece);
-    return executed <= budget;
+    return executed <= limit;
+  };
+  const auto stop_at_jump = [&](const Instruction& jump) -> tl::expected<SliceEnd, RunTimeFault> {
+    if (executed > budget) return fault(FaultKind::budget_spent);
+    progress = {jump.offset, executed, acc, slots, progress.now};
+    return SliceEnd::length;
   };
 
   for (;;) {
@@ -163,21 +189,23 @@ tl::expected<std::uint64_t, RunTimeFault> IlMachine::run_scan(const ProcessImage
         break;
       case Opcode::jump_if:
         if (acc == 0) break;
-        if (!piece_is_within_budget()) return fault(FaultKind::budget_spent);
+        if (!piece_is_within_limit()) return stop_at_jump(in);
         next = piece = code + in.offset;
         break;
       case Opcode::jump_if_not:
         if (acc != 0) break;
-        if (!piece_is_within_budget()) return fault(FaultKind::budget_spent);
+        if (!piece_is_within_limit()) return stop_at_jump(in);
         next = piece = code + in.offset;
         break;
       case Opcode::jump:
-        if (!piece_is_within_budget()) return fault(FaultKind::budget_spent);
+        if (!piece_is_within_limit()) return stop_at_jump(in);
         next = piece = code + in.offset;
         break;
       case Opcode::end_scan:
-        if (!piece_is_within_budget()) return fault(FaultKind::budget_spent);
-        return executed;
+        executed += static_cast<std::uint64_t>(next - piece);
+        if (executed > budget) return fault(FaultKind::budget_spent);
+        progress.executed = executed;
+        return SliceEnd::scan;
       case Opcode::load:
         acc = soft_plc::load(in.type, areas.source(in));
         break;
@@ -226,7 +254,7 @@ tl::expected<std::uint64_t, RunTimeFault> IlMachine::run_scan(const ProcessImage
         break;
       }
       case Opcode::call_block:
-        call(static_cast<BlockKind>(in.detail), areas.target(in), now);
+        call(static_cast<BlockKind>(in.detail), areas.target(in), image.memory.data(), progress.now);
         break;
     }
   }

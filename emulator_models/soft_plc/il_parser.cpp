@@ -126,7 +126,8 @@ class Parser {
     if (at_keyword("AT")) {
       if (declared.size() > 1) fail_here("AT places one variable: declare each on its own");
       next();
-      if (!at(TokenKind::direct_address)) fail_here("AT is followed by an address such as %IX0.0 or %MW5");
+      if (!at(TokenKind::direct_address) && !at(TokenKind::identifier))
+        fail_here("AT is followed by an address such as %IX0.0 or %MW5");
       shared.address_place = peek().place;
       shared.address = next().text;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "emulator_models/soft_plc/il_failure.hpp"
+#include "emulator_models/soft_plc/il_lexer.hpp"
 #include "emulator_models/soft_plc/il_literal.hpp"
 
 namespace emulator_models::soft_plc {
@@ -14,22 +15,44 @@ std::string_view read_only_reason(const Declaration& declaration) noexcept {
   return {};
 }
 
+void note_need(const ValuePlace& value, IlProgram& program) noexcept {
+  std::size_t& needed = program.image_bytes_needed[static_cast<std::size_t>(value.area)];
+  needed = std::max(needed, value.offset + size_bytes(value.type));
+}
+
 class Layout {
  public:
-  explicit Layout(IlProgram& program) noexcept : program_{program} {}
+  Layout(const AddressMap& map, IlProgram& program) noexcept : map_{map}, program_{program} {}
 
-  SymbolTable run(std::span<const Declaration> declarations) {
+  SymbolTable run(const SyntaxTree& tree) {
+    const std::span<const Declaration> declarations = tree.declarations;
     for (const bool retained : {true, false}) {
       for (const Declaration& declaration : declarations) {
         if (declaration.retain == retained) add(declaration);
       }
       if (retained) program_.retained_bytes = program_.initial_variables.size();
     }
+    for (const Statement& statement : tree.statements) {
+      for (const Operand& operand : statement.operands) add_named_block(operand);
+      for (const NamedArgument& argument : statement.arguments) add_named_block(argument.operand);
+    }
     return std::move(symbols_);
   }
 
  private:
+  void add_named_block(const Operand& operand) {
+    if (operand.kind != Operand::Kind::name || symbols_.contains(operand.text)) return;
+    const auto block = map_.block(operand.text);
+    if (!block) return;
+    if (!*block) fail(operand.place, block->error());
+    const std::uint32_t offset = reserve(operand.place, instance_bytes((*block)->kind), block_alignment);
+    construct((*block)->kind, program_.initial_variables.data() + offset, (*block)->devices);
+    symbols_.emplace(operand.text, InstancePlace{(*block)->kind, offset, (*block)->devices});
+  }
+
   void add(const Declaration& declaration) {
+    if (map_.block(declaration.name))
+      fail(declaration.place, declaration.name + " is a block of this PLC and there without a declaration");
     Symbol symbol;
     if (const auto type = elementary_type(declaration.type)) {
       symbol = add_variable(declaration, *type);
@@ -45,11 +68,11 @@ class Layout {
       fail(declaration.place, declaration.name + " is declared twice (capitals do not count): rename one");
   }
 
-  std::uint32_t reserve(const Declaration& declaration, std::size_t bytes, std::size_t alignment) {
+  std::uint32_t reserve(SourcePlace place, std::size_t bytes, std::size_t alignment) {
     std::vector<std::byte>& memory = program_.initial_variables;
     const std::size_t offset = (memory.size() + alignment - 1) / alignment * alignment;
     if (offset + bytes > variables_bytes_max)
-      fail(declaration.place,
+      fail(place,
            "the variables take more than " + std::to_string(variables_bytes_max) + " bytes: use fewer");
     memory.resize(offset + bytes);
     return static_cast<std::uint32_t>(offset);
@@ -62,7 +85,7 @@ class Layout {
     ValuePlace value;
     if (declaration.address.empty()) {
       value.type = type;
-      value.offset = reserve(declaration, size_bytes(type), size_bytes(type));
+      value.offset = reserve(declaration.place, size_bytes(type), size_bytes(type));
       store(type, program_.initial_variables.data() + value.offset, initial);
     } else {
       value = add_at_address(declaration, type, initial);
@@ -77,7 +100,9 @@ class Layout {
     if (declaration.retain)
       fail(declaration.address_place,
            "what lies AT an address is kept or lost with the image: take RETAIN or AT away");
-    ValuePlace value = place_of_address(declaration.address, declaration.address_place, program_);
+    ValuePlace value = declaration.address.starts_with('%')
+                           ? place_of_address(declaration.address, declaration.address_place, map_, program_)
+                           : place_of_device(declaration, type);
     const bool both_bits = type == ElementaryType::boolean && value.type == ElementaryType::boolean;
     const bool neither_bit = type != ElementaryType::boolean && value.type != ElementaryType::boolean;
     if (!both_bits && !(neither_bit && size_bytes(type) == size_bytes(value.type)))
@@ -93,34 +118,55 @@ class Layout {
     return value;
   }
 
+  ValuePlace place_of_device(const Declaration& declaration, ElementaryType type) {
+    const auto place = map_.device(upper(declaration.address), type);
+    if (!place) fail(declaration.address_place, place.error());
+    note_need(*place, program_);
+    return *place;
+  }
+
   InstancePlace add_instance(const Declaration& declaration, BlockKind kind) {
     const std::string name = std::string{name_of(kind)} + " ";
     if (!declaration.address.empty()) fail(declaration.address_place, name + "cannot lie AT an address");
     if (!declaration.initial.empty())
       fail(declaration.initial_place, name + "has no initial value: store its inputs with ST t.PT");
     if (declaration.constant) fail(declaration.place, name + "changes when called and cannot be CONSTANT");
-    const std::uint32_t offset = reserve(declaration, instance_bytes(kind), block_alignment);
-    construct(kind, program_.initial_variables.data() + offset);
-    return {kind, offset};
+    const std::uint32_t offset = reserve(declaration.place, instance_bytes(kind), block_alignment);
+    construct(kind, program_.initial_variables.data() + offset, {});
+    return {kind, offset, {}};
   }
 
+  const AddressMap& map_;
   IlProgram& program_;
   SymbolTable symbols_;
 };
 
 }  // namespace
 
-SymbolTable lay_out(std::span<const Declaration> declarations, IlProgram& program) {
-  return Layout{program}.run(declarations);
+SymbolTable lay_out(const SyntaxTree& tree, const AddressMap& map, IlProgram& program) {
+  return Layout{map, program}.run(tree);
 }
 
-ValuePlace place_of_address(std::string_view text, SourcePlace place, IlProgram& program) {
-  const auto address = parse_address(text);
-  if (!address) fail(place, address.error());
-  std::size_t& needed = program.image_bytes_needed[static_cast<std::size_t>(address->area)];
-  needed = std::max(needed, address->byte_index + size_bytes(address->type));
-  const std::string_view read_only_as = address->area == Area::inputs ? "a physical input" : "";
-  return {address->type, address->area, address->byte_index, address->bit_index, read_only_as};
+ValuePlace place_in(const InstancePlace& instance, const BlockParameter& parameter) noexcept {
+  const std::string_view read_only_as = parameter.is_input ? "" : "an output of a function block";
+  switch (parameter.home) {
+    case ParameterHome::contact:
+      return {parameter.type, Area::memory, instance.devices.contact.byte_index,
+              instance.devices.contact.bit_index, read_only_as};
+    case ParameterHome::value:
+      return {parameter.type, Area::memory, instance.devices.value_byte_index, 0, read_only_as};
+    case ParameterHome::instance:
+      break;
+  }
+  return {parameter.type, Area::variables, instance.offset + parameter.offset, 0, read_only_as};
+}
+
+ValuePlace place_of_address(std::string_view text, SourcePlace place, const AddressMap& map,
+                            IlProgram& program) {
+  const auto value = map.address(text);
+  if (!value) fail(place, value.error());
+  note_need(*value, program);
+  return *value;
 }
 
 std::uint64_t literal_value(std::string_view text, ElementaryType type, SourcePlace place) {

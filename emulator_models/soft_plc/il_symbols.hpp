@@ -9,38 +9,33 @@
 #include <unordered_map>
 #include <variant>
 
-#include "emulator_models/soft_plc/il_address.hpp"
+#include "emulator_models/soft_plc/il_address_map.hpp"
 #include "emulator_models/soft_plc/il_blocks.hpp"
 #include "emulator_models/soft_plc/il_program.hpp"
 
 namespace emulator_models::soft_plc {
 
-/// A value that an instruction can name.
-struct ValuePlace {
-  ElementaryType type = ElementaryType::boolean;
-  Area area = Area::variables;
-  std::uint32_t offset = 0;
-  std::uint8_t bit_index = 0;
-  /// Why the program must not write it, "an input"; empty when it may.
-  std::string_view read_only_as;
-};
-
 struct InstancePlace {
   BlockKind kind = BlockKind::ton;
   std::uint32_t offset = 0;
+  BlockDevices devices;
 };
 
 using Symbol = std::variant<ValuePlace, InstancePlace>;
 /// By name in capitals.
 using SymbolTable = std::unordered_map<std::string, Symbol>;
 
-/// Gives every variable and instance its place, and the program its initial variables.
+/// Gives every variable and instance its place, and the program its initial variables. Blocks that the PLC has by
+/// itself get an instance when a statement names them.
 /// Throws IlFailure: a doubled name, an unknown type, a value or an address that does not fit.
-[[nodiscard]] SymbolTable lay_out(std::span<const Declaration> declarations, IlProgram& program);
+[[nodiscard]] SymbolTable lay_out(const SyntaxTree& tree, const AddressMap& map, IlProgram& program);
+
+[[nodiscard]] ValuePlace place_in(const InstancePlace& instance, const BlockParameter& parameter) noexcept;
 
 /// The place of an address, of the type `type` or else of the bit string of its size. Notes in the program how
 /// many bytes of the image it needs. Throws IlFailure.
-[[nodiscard]] ValuePlace place_of_address(std::string_view text, SourcePlace place, IlProgram& program);
+[[nodiscard]] ValuePlace place_of_address(std::string_view text, SourcePlace place, const AddressMap& map,
+                                          IlProgram& program);
 
 /// The value of a literal as the accumulator holds it. Throws IlFailure when it is none of the type.
 [[nodiscard]] std::uint64_t literal_value(std::string_view text, ElementaryType type, SourcePlace place);

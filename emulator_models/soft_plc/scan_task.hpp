@@ -88,6 +88,9 @@ class ScanTask {
   void order_stop() noexcept;
   /// Clears a fault at the next system analysis. The mode stays STOP.
   void order_reset() noexcept;
+  /// A PLC that reads the watchdog's limit from its memory calls this in the system analysis of each scan.
+  /// @param limit  above zero
+  void set_watchdog_limit(std::chrono::nanoseconds limit) noexcept { watchdog_.set_limit(limit); }
   /// A fault that comes from outside the cycle: enter_fault is the next step, in a wait and in STOP, too. A
   /// fault that is there already stays, and what was ordered to end it is void.
   void halt(FaultCode code) noexcept;

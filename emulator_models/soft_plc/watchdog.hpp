@@ -17,6 +17,9 @@ class Watchdog {
 
   constexpr void begin_scan(std::chrono::nanoseconds now) noexcept { scan_start_ = now; }
 
+  /// Holds from now on, for the scan that is under way, too.
+  constexpr void set_limit(std::chrono::nanoseconds limit) noexcept { limit_ = limit; }
+
   /// @return whether the scan that began last has lasted too long, if it still is under way
   [[nodiscard]] constexpr bool bites(std::chrono::nanoseconds now) const noexcept {
     return now - scan_start_ > limit_;

@@ -107,6 +107,30 @@ TEST(DeviceMemory, differences_names_each_device_that_differs) {
   EXPECT_EQ(after.differences(before), (std::vector{y(255), d(0), d(8511)}));
 }
 
+TEST(DeviceMemory, lies_packed_as_the_port_shows_it_so_that_images_are_parts_of_it) {
+  DeviceMemory memory{Model::fx3u};
+  memory.set({DeviceKind::x, 9}, 1);
+  memory.set(y(255), 1);
+  EXPECT_EQ(memory.inputs().size(), 32U);
+  EXPECT_EQ(memory.inputs()[1], std::byte{0x02});
+  EXPECT_EQ(memory.outputs()[31], std::byte{0x80});
+  memory.bytes()[memory.place_of(d(8000)).byte_index] = std::byte{0x96};
+  EXPECT_EQ(memory.get(d(8000)), 150U);
+  EXPECT_EQ(memory.place_of(d(101)).byte_index, memory.place_of(d(100)).byte_index + 2);
+  EXPECT_EQ(memory.place_of(c(201)).byte_index, memory.place_of(c(200)).byte_index + 4);
+  EXPECT_EQ(memory.place_of(m(8005)).bit_index, 5U);
+}
+
+TEST(DeviceMemory, a_cleared_range_has_sharp_ends) {
+  DeviceMemory memory{Model::fx3u};
+  for (const Device relay : {m(99), m(100), m(102), m(103)}) memory.set(relay, 1);
+  memory.clear(DeviceKind::m, 100, 3);
+  EXPECT_EQ(memory.get(m(99)), 1U);
+  EXPECT_EQ(memory.get(m(100)), 0U);
+  EXPECT_EQ(memory.get(m(102)), 0U);
+  EXPECT_EQ(memory.get(m(103)), 1U);
+}
+
 TEST(DeviceMemoryDeathTest, asking_for_a_device_that_the_model_has_not_is_a_mistake_of_the_caller) {
   const DeviceMemory memory{Model::fx1s};
   EXPECT_DEATH((void)memory.get(d(256)), "check failed");

@@ -2,6 +2,7 @@
 #include "emulator_models/soft_plc/il_machine.hpp"
 
 #include <sstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -37,6 +38,54 @@ TEST(IlMachine, a_scan_may_use_its_whole_budget_and_not_one_instruction_more) {
   IlRig rig{"a, q : BOOL;", "LD a\nST q"};  // and the end
   EXPECT_EQ(rig.scan(3), "ok");
   EXPECT_EQ(rig.scan(2), "3:1: more instructions in one scan than allowed");
+}
+
+/// Slices until the scan ends or faults. @return their number, and the fault
+std::pair<int, std::string> run_in_slices(IlMachine& machine, std::uint64_t length,
+                                          std::uint64_t budget = IlMachine::default_budget) {
+  for (int slices = 1;; ++slices) {
+    // Time goes on between slices; the scan must not see it.
+    const auto end = machine.run_slice({}, std::chrono::milliseconds{slices}, length, budget);
+    if (!end) return {slices, to_string(end.error())};
+    if (*end == SliceEnd::scan) return {slices, ""};
+  }
+}
+
+TEST(IlMachine, a_scan_in_slices_does_what_a_scan_at_once_does_and_sees_one_time) {
+  const char* const body =
+      "LD 0\nST i\nagain: LD i\nADD 1\nST i\nLD TRUE\nAND( a\nSEL b, c\nAND d\n)\nST q\n"
+      "CAL t(IN := TRUE, PT := T#1ms)\nLD i\nLT 10\nJMPC again";
+  const char* const variables = "i : INT; a : BOOL; b, d : BOOL := TRUE; c, q : BOOL; t : TON;";
+  IlRig at_once{variables, body};
+  EXPECT_EQ(at_once.scan(), "ok");
+  for (const std::uint64_t length : {1U, 7U, 50U}) {
+    IlRig sliced{variables, body};
+    const auto [slices, fault] = run_in_slices(sliced.machine(), length);
+    EXPECT_EQ(fault, "");
+    EXPECT_GE(slices, 200 / static_cast<int>(length + 20));
+    for (const char* const name : {"i", "q"}) EXPECT_EQ(sliced.get(name), at_once.get(name)) << name;
+    EXPECT_EQ(sliced.get("i"), "10");
+    EXPECT_EQ(sliced.get("q"), "1");
+  }
+}
+
+TEST(IlMachine, an_endless_loop_in_slices_goes_on_until_the_budget_of_the_scan_is_spent) {
+  IlRig rig{"i : INT;", "here: LD i\nADD 1\nST i\nJMP here"};
+  const auto [slices, fault] = run_in_slices(rig.machine(), 40, 400);
+  EXPECT_EQ(fault, "5:1: more instructions in one scan than allowed");
+  EXPECT_GE(slices, 9);
+  EXPECT_EQ(rig.get("i"), "101");
+}
+
+TEST(IlMachine, an_abandoned_scan_begins_again_at_the_first_instruction) {
+  IlRig rig{"i, j : INT;", "LD j\nADD 1\nST j\nhere: LD i\nADD 1\nST i\nLT 100\nJMPC here"};
+  const auto slice = [&] { return rig.machine().run_slice({}, {}, 10); };
+  EXPECT_EQ(slice(), SliceEnd::length);
+  EXPECT_EQ(slice(), SliceEnd::length);
+  EXPECT_EQ(rig.get("j"), "1");
+  rig.machine().abandon_scan();
+  EXPECT_EQ(slice(), SliceEnd::length);
+  EXPECT_EQ(rig.get("j"), "2");
 }
 
 TEST(IlMachine, conversions_out_of_range_and_negative_shifts_are_faults) {

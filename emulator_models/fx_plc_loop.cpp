@@ -1,0 +1,23 @@
+#include "emulator_models/fx_plc_loop.hpp"
+
+namespace emulator_models {
+
+void FxPlcLoop::run() noexcept {
+  for (;;) {
+    const soft_plc::ScanStep step =
+        plc_.advance(std::chrono::steady_clock::now(), std::chrono::system_clock::now());
+    if (step.action != soft_plc::ScanAction::wait) continue;
+    std::unique_lock lock{mutex_};
+    if (stopped_.wait_until(lock, SteadyTime{step.until}, [this] { return stop_requested_; })) return;
+  }
+}
+
+void FxPlcLoop::request_stop() noexcept {
+  {
+    const std::lock_guard lock{mutex_};
+    stop_requested_ = true;
+  }
+  stopped_.notify_all();
+}
+
+}  // namespace emulator_models

@@ -1,0 +1,54 @@
+// The programming port of a PLC that is scanned: a request waits until the scan serves it, in the system analysis.
+//
+// One request, one image: what a request reads and writes lies between two scans, whole, and its answer takes up to one
+// scan. When nobody scans, it is given up after a bounded time and met with silence, as a PLC that hangs would.
+//
+// Invariants
+//   I1  requests are executed in the order in which they came, each once or, when given up, not at all.
+//   I2  serve() neither waits for a caller nor allocates.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+
+#include "emulator_models/fx_plc_emulator.hpp"
+
+namespace emulator_models {
+
+class ScanBoundaryPort final : public IPlcEmulator {
+ public:
+  static constexpr std::chrono::seconds default_patience{1};
+  /// Requests that wait at once; one more is met with silence.
+  static constexpr std::size_t waiting_max = 8;
+
+  /// @param plc       must outlive this
+  /// @param patience  how long a request waits; above the longest scan
+  explicit ScanBoundaryPort(FxPlcEmulator& plc,
+                            std::chrono::nanoseconds patience = default_patience) noexcept;
+
+  [[nodiscard]] protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override;
+
+  /// Executes all requests that wait. Called by the scan, which holds the memory.
+  void serve(const FxPlcEmulator::LockedMemory& memory) noexcept;
+
+ private:
+  struct Waiting {
+    std::span<const std::byte> request;
+    protocol::fx::FrameBytes answer;
+    bool done = false;
+  };
+
+  void withdraw(const Waiting& waiting) noexcept;
+
+  FxPlcEmulator& plc_;
+  std::chrono::nanoseconds patience_;
+  std::mutex mutex_;
+  std::condition_variable answered_;
+  std::array<Waiting*, waiting_max> queue_{};
+  std::size_t queue_length_ = 0;
+};
+
+}  // namespace emulator_models
