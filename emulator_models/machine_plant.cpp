@@ -31,7 +31,7 @@ void MachinePlant::advance(Terminals& terminals, SteadyTime now) noexcept {
 void MachinePlant::advance_spindle(Terminals& terminals, SteadyTime now) noexcept {
   const SpindleOrder order{terminals.outputs.test(machine::spindle_clockwise.number),
                            terminals.outputs.test(machine::spindle_counter_clockwise.number),
-                           terminals.spindle_speed_rpm};
+                           terminals.analog_outputs[0]};
   const bool was_turning = spindle_order_.clockwise || spindle_order_.counter_clockwise;
   const bool turns = order.clockwise || order.counter_clockwise;
   // A new speed means nothing to a spindle that stands.

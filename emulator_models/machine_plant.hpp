@@ -10,23 +10,13 @@
 // Left out: faults of the drives, levels, pressures, the position of the magazine.
 #pragma once
 
-#include <bitset>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
+#include "emulator_models/plants/terminals.hpp"
 #include "emulator_models/special_devices.hpp"
 
 namespace emulator_models {
-
-/// What the wires of the PLC carry at this moment, by index of X and Y.
-struct Terminals {
-  static constexpr std::size_t points_count = 256;
-
-  std::bitset<points_count> inputs;
-  std::bitset<points_count> outputs;
-  std::uint16_t spindle_speed_rpm = 0;
-};
 
 class MachinePlant {
  public:

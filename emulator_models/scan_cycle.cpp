@@ -62,7 +62,7 @@ void ScanCycle::write_outputs(const DeviceMemory& memory) noexcept {
   const std::uint16_t outputs_count = protocol::fx::ranges_of(memory.model()).y;
   for (std::uint16_t i = 0; i < outputs_count; ++i)
     terminals_.outputs.set(i, enabled && memory.get({DeviceKind::y, i}) != 0);
-  terminals_.spindle_speed_rpm =
+  terminals_.analog_outputs[0] =
       enabled ? static_cast<std::uint16_t>(memory.get(machine::spindle_speed)) : std::uint16_t{0};
 }
 

@@ -53,14 +53,14 @@ TEST_F(MachinePlantTest, the_spindle_stands_after_its_time) {
 }
 
 TEST_F(MachinePlantTest, another_speed_is_another_run_up_but_not_for_a_spindle_that_stands) {
-  terminals.spindle_speed_rpm = 500;
+  terminals.analog_outputs[0] = 500;
   after(10ms);
   EXPECT_TRUE(sees(machine::zero_speed_switch));
   order(machine::spindle_clockwise, true);
   after(10ms);
   after(500ms);
   EXPECT_TRUE(sees(machine::at_speed_switch));
-  terminals.spindle_speed_rpm = 800;
+  terminals.analog_outputs[0] = 800;
   after(10ms);
   EXPECT_FALSE(sees(machine::at_speed_switch));
   after(500ms);
