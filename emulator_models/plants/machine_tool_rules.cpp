@@ -120,7 +120,7 @@ void MachineToolRules::look_at_spindle(const View& view) noexcept {
   bound(door_feed_hold, view.contract.feed_enable && !view.on(X::door_closed), reaction_, view.now);
   bound(door_unlock, !view.on(Y::door_lock) && (view.turns() || !view.contract.distribution_end), reaction_,
         view.now);
-  bound(chuck_at_standstill, view.on(Y::chuck_unclamp) && view.turns(), reaction_, view.now);
+  bound(chuck_at_standstill, view.on(Y::chuck_unclamp) && view.turns(), nanoseconds{-1}, view.now);
 }
 
 void MachineToolRules::look_at_coolant(const View& view) noexcept {
