@@ -27,7 +27,11 @@ bool is_motion_word(const Word& word) noexcept {
 }
 
 FunctionRequest request_of(const MachineFunction& function) {
-  return {.m = function.code, .s = {}, .t = {}, .acknowledgement = function.acknowledgement};
+  return {.m = function.code,
+          .s = {},
+          .t = {},
+          .acknowledgement = function.acknowledgement,
+          .spindle = function.spindle};
 }
 
 }  // namespace
@@ -43,11 +47,11 @@ std::string to_string(const FunctionRequest& request) {
   return text;
 }
 
-tl::expected<BlockPlan, NcError> plan_block(const Block& block) {
+tl::expected<BlockPlan, NcError> plan_block(const Block& block, const MachineTable& table) {
   std::vector<const MachineFunction*> functions;
   for (const Word& word : block.words) {
     if (word.letter != 'M') continue;
-    const MachineFunction* const function = machine_function(static_cast<std::uint8_t>(word.value.whole()));
+    const MachineFunction* const function = table.find(static_cast<std::uint8_t>(word.value.whole()));
     if (function == nullptr) {
       return tl::unexpected{NcError{NcFault::m_code_not_in_machine_table, block.line, to_string(word)}};
     }
@@ -80,9 +84,9 @@ tl::expected<BlockPlan, NcError> plan_block(const Block& block) {
   return plan;
 }
 
-tl::expected<void, NcError> check_for_machine(const Program& program) {
+tl::expected<void, NcError> check_for_machine(const Program& program, const MachineTable& table) {
   for (const Block& block : program.blocks) {
-    if (const auto plan = plan_block(block); !plan) return tl::unexpected{plan.error()};
+    if (const auto plan = plan_block(block, table); !plan) return tl::unexpected{plan.error()};
   }
   return {};
 }

@@ -24,6 +24,8 @@ struct FunctionRequest {
   std::optional<std::uint16_t> s;
   std::optional<std::uint16_t> t;
   Acknowledgement acknowledgement = Acknowledgement::before_going_on;
+  /// Of the M function.
+  SpindleEffect spindle = SpindleEffect::none;
 
   bool operator==(const FunctionRequest&) const = default;
 };
@@ -40,9 +42,11 @@ struct BlockPlan {
 };
 
 /// @return m_code_not_in_machine_table or does_not_fit_plc_word, with the word, when the machine cannot do it
-[[nodiscard]] tl::expected<BlockPlan, NcError> plan_block(const Block& block);
+[[nodiscard]] tl::expected<BlockPlan, NcError> plan_block(
+    const Block& block, const MachineTable& table = MachineTable::standard());
 
 /// Plans every block: a program that this machine cannot carry out is refused before anything moves.
-[[nodiscard]] tl::expected<void, NcError> check_for_machine(const Program& program);
+[[nodiscard]] tl::expected<void, NcError> check_for_machine(
+    const Program& program, const MachineTable& table = MachineTable::standard());
 
 }  // namespace kernel_mocks

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -15,9 +17,12 @@
 #include <CLI/CLI.hpp>
 
 #include "kernel_mocks/console_report.hpp"
+#include "kernel_mocks/machine_table_file.hpp"
 #include "kernel_mocks/nc_parser.hpp"
+#include "kernel_mocks/operator_script_file.hpp"
 #include "kernel_mocks/part_program_file.hpp"
 #include "kernel_mocks/part_program_runner.hpp"
+#include "kernel_mocks/polled_link.hpp"
 #include "protocol/paper_command_line.hpp"
 #include "protocol/posix_port_manager.hpp"
 #include "protocol/role_lock.hpp"
@@ -47,6 +52,13 @@ struct Arguments {
   unsigned fin_timeout_ms = 10'000;
   unsigned poll_interval_ms = 5;
   unsigned retries = 2;
+  unsigned tmf_ms = 0;
+  unsigned tfin_ms = 0;
+  unsigned enq_wait_ms = 0;
+  unsigned request_wait_ms = 0;
+  std::string polling = "direct";
+  std::string machine_table;
+  std::string operator_script;
   unsigned baud_rate = 9600;
   protocol::PaperOptions paper;
 };
@@ -81,6 +93,22 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--poll-interval-ms", arguments.poll_interval_ms, "Pause between two looks for FIN")
       ->check(CLI::Range(0, 60'000))
       ->capture_default_str();
+  app.add_option("--tmf-ms", arguments.tmf_ms, "From the code to its strobe")->check(CLI::Range(0, 60'000));
+  app.add_option("--tfin-ms", arguments.tfin_ms, "Shortest FIN that counts")->check(CLI::Range(0, 60'000));
+  app.add_option("--enq-wait-ms", arguments.enq_wait_ms, "Fixed pause after ENQ")
+      ->check(CLI::Range(0, 60'000));
+  app.add_option("--request-wait-ms", arguments.request_wait_ms, "Fixed pause after each request")
+      ->check(CLI::Range(0, 60'000));
+  app.add_option("--polling", arguments.polling,
+                 "Who uses the port: each task (direct), or one thread (helper)")
+      ->check(CLI::IsMember({"direct", "helper"}))
+      ->capture_default_str();
+  app.add_option("--machine-table", arguments.machine_table, "M functions of the machine (TOML)");
+  app.add_option("--operator", arguments.operator_script, "What the operator presses when (TOML)");
+  app.add_option("--motion-percent", arguments.runner.axes.time_percent,
+                 "Motion lasts so many percent of its time; 0: none at all")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   app.add_option("--baud", arguments.baud_rate, "Bits per second of the serial device")
       ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
@@ -112,7 +140,9 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
   FxDriver driver{port,
                   {.model = model,
                    .answer_timeout = std::chrono::milliseconds{arguments.read_timeout_ms},
-                   .retries = arguments.retries}};
+                   .retries = arguments.retries,
+                   .enq_wait = std::chrono::milliseconds{arguments.enq_wait_ms},
+                   .request_wait = std::chrono::milliseconds{arguments.request_wait_ms}}};
   if (const auto connected = driver.connect(); !connected) {
     const bool port_failed = connected.error() == FxDriverError::port_failed;
     return complain(exit_stopped, fmt::format("no PLC on {}: {}. {}", where,
@@ -121,10 +151,19 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
                                               no_plc_hint));
   }
 
-  ConsoleReport report{driver};
-  LogicTask logic_task{driver,
+  const std::chrono::milliseconds poll_interval{arguments.poll_interval_ms};
+  std::unique_ptr<PlcLink> link;
+  if (arguments.polling == "helper") {
+    link = std::make_unique<PolledLink>(driver, PolledLinkOptions{.poll_interval = poll_interval});
+  } else {
+    link = std::make_unique<DirectLink>(driver);
+  }
+  ConsoleReport report{*link};
+  LogicTask logic_task{*link,
                        {.poll_interval = std::chrono::milliseconds{arguments.poll_interval_ms},
-                        .fin_timeout = std::chrono::milliseconds{arguments.fin_timeout_ms}},
+                        .fin_timeout = std::chrono::milliseconds{arguments.fin_timeout_ms},
+                        .tmf = std::chrono::milliseconds{arguments.tmf_ms},
+                        .tfin = std::chrono::milliseconds{arguments.tfin_ms}},
                        nullptr,
                        &stop_asked_for};
   PartProgramRunner runner{logic_task, arguments.runner, &report};
@@ -134,6 +173,7 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
   const auto start = std::chrono::steady_clock::now();
   const RunResult result = runner.run(program);
   const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
+  link.reset();  // its thread counts, too
   const FxDriver::Counters& counters = driver.counters();
   fmt::print("{} {:.2f} s: {} handshakes, {} motion blocks noted; {} requests, {} retries, {} time-outs\n",
              result.outcome == RunOutcome::ended ? "program ended after" : "program stopped after",
@@ -211,7 +251,32 @@ int checked_main(int argc, char** argv) {
   const auto program = parse_program(*text, {.skip_optional_blocks = arguments.block_skip});
   if (!program)
     return complain(exit_usage, fmt::format("{}: {}", arguments.file, to_string(program.error())));
-  if (const auto checked = check_for_machine(*program); !checked) {
+  MachineTable table = MachineTable::standard();
+  if (!arguments.machine_table.empty()) {
+    const auto file = read_program_file(arguments.machine_table);
+    if (!file)
+      return complain(exit_usage, fmt::format("{} {}", arguments.machine_table, to_string(file.error())));
+    const auto parsed = parse_machine_table(*file);
+    if (!parsed)
+      return complain(exit_usage, fmt::format("{}: {}", arguments.machine_table, to_string(parsed.error())));
+    table = *parsed;
+  }
+  arguments.runner.machine_table = &table;
+  OperatorPanel panel;
+  std::optional<ScriptedOperator> scripted;
+  if (!arguments.operator_script.empty()) {
+    const auto file = read_program_file(arguments.operator_script);
+    if (!file)
+      return complain(exit_usage, fmt::format("{} {}", arguments.operator_script, to_string(file.error())));
+    const auto parsed = parse_operator_script(*file);
+    if (!parsed)
+      return complain(exit_usage,
+                      fmt::format("{}: {}", arguments.operator_script, to_string(parsed.error())));
+    scripted.emplace(*parsed);
+    arguments.runner.panel = &panel;
+    arguments.runner.operator_ = &*scripted;
+  }
+  if (const auto checked = check_for_machine(*program, table); !checked) {
     return complain(exit_stopped, fmt::format("{}: {}", arguments.file, to_string(checked.error())));
   }
   if (arguments.check_only) {

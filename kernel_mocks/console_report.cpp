@@ -34,7 +34,7 @@ void ConsoleReport::show_outputs() noexcept {
   using protocol::fx::Device;
   using protocol::fx::DeviceKind;
   Outputs now{};
-  const auto read = driver_.read_bytes({DeviceKind::y, 0}, now);
+  const auto read = link_.read_bytes({DeviceKind::y, 0}, now);
   if (!read) {
     print_line(fmt::format("{:>30} outputs not read: {}", "", to_string(read.error())));
     return;

@@ -9,15 +9,15 @@
 #include <cstddef>
 #include <optional>
 
-#include "kernel_mocks/fx_driver.hpp"
 #include "kernel_mocks/part_program_runner.hpp"
+#include "kernel_mocks/plc_link.hpp"
 
 namespace kernel_mocks {
 
 class ConsoleReport final : public PartProgramObserver {
  public:
-  /// @param driver  to look at the outputs with; must outlive the report
-  explicit ConsoleReport(FxDriver& driver) noexcept : driver_{driver} {}
+  /// @param link  to look at the outputs with; must outlive the report
+  explicit ConsoleReport(PlcLink& link) noexcept : link_{link} {}
 
   void acknowledged(const Block& block, const FunctionRequest& request,
                     std::chrono::nanoseconds duration) noexcept override;
@@ -33,7 +33,7 @@ class ConsoleReport final : public PartProgramObserver {
  private:
   using Outputs = std::array<std::byte, 2>;
 
-  FxDriver& driver_;
+  PlcLink& link_;
   Outputs outputs_{};
   std::size_t function_count_ = 0;
   std::size_t motion_count_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <thread>
 
 namespace kernel_mocks {
 namespace {
@@ -154,6 +155,8 @@ tl::expected<void, FxDriverError> FxDriver::try_once(std::span<const std::byte> 
   if (!line_is_clean_) port_.purge();
   line_is_clean_ = false;
   if (const auto sent = send(frame); !sent) return sent;
+  const auto wait = frame.size() == 1 ? options_.enq_wait : options_.request_wait;
+  if (wait > std::chrono::nanoseconds{0}) std::this_thread::sleep_for(wait);
   const auto event = receive();
   if (!event) return tl::unexpected{event.error()};
   switch (*event) {

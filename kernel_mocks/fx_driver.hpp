@@ -51,6 +51,10 @@ struct FxDriverOptions {
   unsigned retries = 2;
   /// Tries of ENQ; three unanswered ones mean that there is no PLC.
   unsigned enq_tries = 3;
+  /// Fixed pauses before the answer is looked for, as drivers of slow ports make them (20 ms and 40 ms where
+  /// they are published). Zero: read() itself waits, which loses nothing.
+  std::chrono::nanoseconds enq_wait{0};
+  std::chrono::nanoseconds request_wait{0};
 };
 
 class FxDriver {

@@ -12,19 +12,25 @@
 // Speed and tool number keep their value between requests, the PLC heeds them when their strobe rises; the
 // M code means nothing without its strobe.
 //
-// A FIN shorter than the poll interval may be missed; the fin_timeout then ends the wait.
+// TMF delays step 3; a FIN that falls before it has been on for TFIN does not count. A FIN shorter than the poll
+// interval may be missed; the fin_timeout then ends the wait.
+//
+// The signals of the motion (DEN, feed hold, Z at the tool change position) are set through this class too, by
+// another thread: DEN shares its byte with the strobes.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include <tl/expected.hpp>
 
 #include "kernel_mocks/block_plan.hpp"
-#include "kernel_mocks/fx_driver.hpp"
+#include "kernel_mocks/plc_link.hpp"
 
 namespace kernel_mocks {
 
@@ -49,13 +55,17 @@ class LogicTaskObserver {
 };
 
 enum class LogicFault : std::uint8_t {
-  link_lost,       ///< an exchange with the PLC failed
-  alarm,           ///< the PLC reports an alarm
-  emergency_stop,  ///< the emergency-stop chain is open
-  not_ready,       ///< the PLC does not allow a cycle start
-  fin_missing,     ///< no FIN within the time-out
-  fin_stuck,       ///< FIN did not go off within the time-out
-  interrupted,     ///< somebody asked for a stop
+  link_lost,                ///< an exchange with the PLC failed
+  alarm,                    ///< the PLC reports an alarm
+  emergency_stop,           ///< the emergency-stop chain is open
+  not_ready,                ///< the PLC does not allow a cycle start
+  fin_missing,              ///< no FIN within the time-out
+  fin_stuck,                ///< FIN did not go off within the time-out
+  interrupted,              ///< somebody asked for a stop
+  spindle_not_at_speed,     ///< a motion at feed waited for it in vain
+  operator_reset,           ///< the operator pressed reset
+  operator_abort,           ///< the operator ended the program
+  operator_emergency_stop,  ///< the operator pressed the kernel's emergency stop
 };
 
 struct LogicFailure {
@@ -77,6 +87,14 @@ struct LogicTaskOptions {
   std::chrono::nanoseconds fin_timeout = std::chrono::seconds{10};
   /// Longest wait at the program start for the PLC to allow it.
   std::chrono::nanoseconds ready_timeout = std::chrono::seconds{2};
+  /// From the code to its strobe (Fanuc's parameter 3010, 16 ms there). Zero: the code is acknowledged by the PLC
+  /// before the strobe is sent, so that nothing has to settle.
+  std::chrono::nanoseconds tmf{0};
+  /// Shortest FIN that counts (Fanuc's parameter 3011, 16 ms there). Zero: a FIN seen by a poll has been on for a
+  /// whole scan of the PLC.
+  std::chrono::nanoseconds tfin{0};
+  /// A status older than this is a lost link; only a link that polls by itself has old ones.
+  std::chrono::nanoseconds status_age_max = std::chrono::seconds{1};
   /// Length of the reset signal: longer than a scan, so that no PLC misses it.
   std::chrono::nanoseconds reset_pulse = std::chrono::milliseconds{50};
 };
@@ -87,6 +105,9 @@ class LogicTask {
   /// @param observer  may be nullptr
   /// @param stop      may be nullptr; when it becomes true, every wait ends with LogicFault::interrupted
   LogicTask(FxDriver& driver, const LogicTaskOptions& options, LogicTaskObserver* observer = nullptr,
+            const std::atomic<bool>* stop = nullptr);
+  /// @param link  must outlive the task
+  LogicTask(PlcLink& link, const LogicTaskOptions& options, LogicTaskObserver* observer = nullptr,
             const std::atomic<bool>* stop = nullptr);
 
   /// Takes back what a former kernel may have left on, resets the PLC, and waits until it is ready: no alarm,
@@ -101,7 +122,23 @@ class LogicTask {
 
   [[nodiscard]] tl::expected<void, LogicFailure> end_program();
 
-  /// Strobes off, a pulse on the reset signal, "program running" off. Gives up at the first failed exchange:
+  /// Ends every wait with LogicFault::interrupted, from any thread, until the next begin_program().
+  void abort() noexcept { aborted_.store(true); }
+  [[nodiscard]] bool interrupted() const noexcept;
+  [[nodiscard]] const LogicTaskOptions& options() const noexcept { return options_; }
+  [[nodiscard]] PlcLink& link() noexcept { return link_; }
+
+  /// What a motion has to heed, read now.
+  /// @return M120 to M127; or link_lost, emergency_stop, alarm
+  [[nodiscard]] tl::expected<std::byte, LogicFailure> healthy_status();
+  /// DEN: off while a motion of the block is under way. Any thread.
+  [[nodiscard]] tl::expected<void, LogicFailure> set_motion_under_way(bool under_way);
+  [[nodiscard]] tl::expected<void, LogicFailure> set_feed_hold(bool active);
+  [[nodiscard]] tl::expected<void, LogicFailure> set_at_tool_change_position(bool there);
+  /// Remote RUN or STOP of the PLC, by M8035 to M8037.
+  [[nodiscard]] tl::expected<void, LogicFailure> set_plc_running(bool run);
+
+  /// Strobes off, M code 0, DEN on, a pulse on the reset signal, "program running" off. Gives up at the first failed exchange:
   /// a PLC that cannot be reached cannot be reset.
   tl::expected<void, LogicFailure> reset();
 
@@ -111,16 +148,22 @@ class LogicTask {
   tl::expected<void, LogicFailure> set_strobes(std::byte strobes);
   tl::expected<void, LogicFailure> wait_until_ready();
   tl::expected<void, LogicFailure> wait_for_fin(bool on, Clock::time_point since);
-  tl::expected<std::byte, LogicFailure> read_status();
+  tl::expected<std::byte, LogicFailure> read_status(Clock::time_point not_before);
+  tl::expected<void, LogicFailure> check_health(std::byte status, Clock::time_point since);
+  tl::expected<void, LogicFailure> write_strobe_byte();
   LogicFailure alarm_failure(Clock::time_point since);
-  [[nodiscard]] bool stop_asked_for() const noexcept;
   template <typename Notify>
   void tell(const FunctionRequest& request, Notify notify) const;
 
-  FxDriver& driver_;
+  std::unique_ptr<PlcLink> own_link_;
+  PlcLink& link_;
   LogicTaskOptions options_;
   LogicTaskObserver* observer_;
   const std::atomic<bool>* stop_;
+  std::atomic<bool> aborted_{false};
+  std::mutex strobe_byte_mutex_;  ///< held over the write, so that the PLC sees the changes in their order
+  std::byte strobes_{0};
+  bool motion_under_way_ = false;
   FunctionRequest raised_;
   Clock::time_point raised_at_;
   /// Last values of D100 to D102.

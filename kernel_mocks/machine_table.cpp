@@ -1,7 +1,8 @@
 #include "kernel_mocks/machine_table.hpp"
 
-#include <algorithm>
 #include <array>
+
+#include "protocol/check.hpp"
 
 namespace kernel_mocks {
 namespace {
@@ -22,17 +23,18 @@ constexpr std::array function_table{
     MachineFunction{60, end, usual, before_going_on},
     MachineFunction{99, end, stop_last, before_going_on, false, ProgramFlow::end},
     // Spindle and coolant: on at the begin, off at the end.
-    MachineFunction{3, begin},
-    MachineFunction{4, begin},
-    MachineFunction{5, end},
+    MachineFunction{3, begin, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::start},
+    MachineFunction{4, begin, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::start},
+    MachineFunction{5, end, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::stop},
     MachineFunction{7, begin},
     MachineFunction{8, begin},
     MachineFunction{9, end},
-    MachineFunction{13, begin},
-    MachineFunction{14, begin},
-    MachineFunction{19, end},
+    MachineFunction{13, begin, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::start},
+    MachineFunction{14, begin, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::start},
+    MachineFunction{19, end, usual, before_going_on, true, ProgramFlow::none, SpindleEffect::stop},
     // The tool change stops the spindle, so it precedes an M3 of its block.
-    MachineFunction{6, begin, tool_change_first},
+    MachineFunction{6, begin, tool_change_first, before_going_on, true, ProgramFlow::none,
+                    SpindleEffect::stop},
     // Clamp before the block's motion, unclamp before it too.
     MachineFunction{10, begin},
     MachineFunction{11, begin},
@@ -45,20 +47,27 @@ constexpr std::array function_table{
 constexpr std::uint8_t builder_code_min = 100;
 constexpr std::uint8_t builder_code_max = 199;
 
-constexpr std::array builder_table = [] {
-  std::array<MachineFunction, builder_code_max - builder_code_min + 1> table{};
-  for (std::size_t index = 0; index < table.size(); ++index) {
-    table[index].code = static_cast<std::uint8_t>(builder_code_min + index);
-  }
-  return table;
-}();
-
 }  // namespace
 
-const MachineFunction* machine_function(std::uint8_t code) noexcept {
-  if (code >= builder_code_min && code <= builder_code_max) return &builder_table[code - builder_code_min];
-  const auto found = std::ranges::find(function_table, code, &MachineFunction::code);
-  return found == function_table.end() ? nullptr : &*found;
+const MachineTable& MachineTable::standard() noexcept {
+  static const MachineTable table = [] {
+    MachineTable built;
+    for (const MachineFunction& function : function_table) built.put(function);
+    for (unsigned code = builder_code_min; code <= builder_code_max; ++code) {
+      built.put({.code = static_cast<std::uint8_t>(code)});
+    }
+    return built;
+  }();
+  return table;
+}
+
+const MachineFunction* MachineTable::find(std::uint8_t code) const noexcept {
+  return code <= code_max && functions_[code] ? &*functions_[code] : nullptr;
+}
+
+void MachineTable::put(const MachineFunction& function) noexcept {
+  PLC_CHECK(function.code <= code_max);
+  functions_[function.code] = function;
 }
 
 }  // namespace kernel_mocks

@@ -1,10 +1,13 @@
-// Which M function acts when, and whether the program waits for it.
+// Which M function acts when, and what waits for it.
 //
-// The parser knows M codes as numbers; this table says what the machine has. Begin and end follow the column
-// of ISO 6983 / EIA RS-274-D where it fixes them; README.md gives the choice where it does not.
+// The parser knows M codes as numbers; this table says what the machine has. standard() follows the column of
+// ISO 6983 / EIA RS-274-D where it fixes begin and end; README.md gives the choice where it does not. Another
+// machine's table is read from a file (machine_table_file.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 namespace kernel_mocks {
 
@@ -13,13 +16,20 @@ enum class EffectPoint : std::uint8_t {
   end,    ///< after it
 };
 
+/// What must not begin before FIN. The synchronisation kinds of a commercial kernel are pairs of effect point
+/// and this; README.md, "Synchronisation kinds".
 enum class Acknowledgement : std::uint8_t {
-  before_going_on,       ///< the block waits for FIN
-  before_next_function,  ///< the program goes on; FIN is waited for before the next function is given
+  before_going_on,       ///< the block waits at once: MVS_SVS (begin), MNS_SNS (end)
+  before_next_function,  ///< nothing but the next function waits: MOS
+  at_block_end,          ///< the motion of the block runs meanwhile: MVS_SNS
+  before_feed,           ///< the next motion at feed waits, rapids do not: MVS_SLM
 };
 
 /// What the kernel itself does at this M code.
 enum class ProgramFlow : std::uint8_t { none, stop, optional_stop, end };
+
+/// What becomes of the spindle: motion at feed after a start waits for "spindle at speed".
+enum class SpindleEffect : std::uint8_t { none, start, stop };
 
 struct MachineFunction {
   std::uint8_t code = 0;
@@ -30,9 +40,28 @@ struct MachineFunction {
   /// False: the kernel's own business, the PLC never sees it.
   bool sent_to_plc = true;
   ProgramFlow flow = ProgramFlow::none;
+  SpindleEffect spindle = SpindleEffect::none;
+
+  bool operator==(const MachineFunction&) const = default;
 };
 
-/// @return the function, or nullptr when the machine has none of that number
-[[nodiscard]] const MachineFunction* machine_function(std::uint8_t code) noexcept;
+class MachineTable {
+ public:
+  static constexpr unsigned code_max = 199;
+
+  /// The machine of README.md.
+  [[nodiscard]] static const MachineTable& standard() noexcept;
+
+  /// @param code  0 to code_max
+  /// @return      the function, or nullptr when the machine has none of that number
+  [[nodiscard]] const MachineFunction* find(std::uint8_t code) const noexcept;
+  /// @param function  its code: 0 to code_max; one that is there already is replaced
+  void put(const MachineFunction& function) noexcept;
+
+  bool operator==(const MachineTable&) const = default;
+
+ private:
+  std::array<std::optional<MachineFunction>, code_max + 1> functions_;
+};
 
 }  // namespace kernel_mocks

@@ -85,6 +85,16 @@ std::string_view to_string(NcFault fault) noexcept {
       return "the machine has no such M function";
     case NcFault::does_not_fit_plc_word:
       return "the PLC takes whole numbers from 0 to 65535";
+    case NcFault::beyond_axis_limit:
+      return "the axis would leave its travel";
+    case NcFault::arc_radius_too_small:
+      return "the radius does not reach from the start of the arc to its end";
+    case NcFault::arc_end_off_circle:
+      return "the end of the arc does not lie on the circle through its start";
+    case NcFault::feed_per_revolution_without_speed:
+      return "a feed per revolution (G95) needs a spindle speed S greater than zero";
+    case NcFault::motion_too_long:
+      return "the motion would last longer than 24 hours";
   }
   return "unknown fault";
 }

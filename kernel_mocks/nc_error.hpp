@@ -53,6 +53,11 @@ enum class NcFault : std::uint8_t {
   // what this machine has
   m_code_not_in_machine_table,
   does_not_fit_plc_word,
+  beyond_axis_limit,
+  arc_radius_too_small,
+  arc_end_off_circle,
+  feed_per_revolution_without_speed,
+  motion_too_long,
 };
 
 /// The reason as a sentence without a full stop, limits included.

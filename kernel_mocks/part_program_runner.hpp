@@ -1,8 +1,14 @@
 // Runs a part program block by block: the kernel's main loop.
 //
-// Motion is noted and takes no time. Functions go to the PLC through the logic task, in the order of the
-// block's plan. A block whose last function is acknowledged late (Acknowledgement::before_next_function) does
-// not wait; its FIN is taken before the next function is given, or at the end of the program.
+// A block is split: its motion goes to the geometry task, its functions to the logic task, each a thread; the
+// runner feeds both and waits as the function's Acknowledgement demands. One handshake at a time: a function that
+// is not waited for is finished before the next one is given, or at the end of the program.
+//
+// Invariants
+//   - DEN (M103) is off while a motion is under way, and on before a function of the block's end is given.
+//   - A motion at feed after a spindle start begins only with "spindle at speed" (M123); rapids do not wait.
+//   - While the feed hold is active no block begins and no axis moves; a handshake under way goes on.
+//   - While M125 is off no axis moves.
 //
 // A run that fails, or ends at a stop, resets the PLC: nobody is there who would press cycle start.
 #pragma once
@@ -15,8 +21,12 @@
 #include <tl/expected.hpp>
 
 #include "kernel_mocks/block_plan.hpp"
+#include "kernel_mocks/function_worker.hpp"
+#include "kernel_mocks/geometry_task.hpp"
 #include "kernel_mocks/logic_task.hpp"
+#include "kernel_mocks/motion.hpp"
 #include "kernel_mocks/nc_program.hpp"
+#include "kernel_mocks/operator_panel.hpp"
 
 namespace kernel_mocks {
 
@@ -24,7 +34,14 @@ class PartProgramObserver {
  public:
   virtual ~PartProgramObserver() = default;
 
-  /// The block moves an axis or dwells.
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// The strobes of the request are up.
+  virtual void given(const Block& /*block*/, const FunctionRequest& /*request*/, TimePoint /*at*/) noexcept {}
+  /// No FIN for a request whose strobes were up.
+  virtual void not_acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
+                                const LogicFailure& /*failure*/) noexcept {}
+  /// The block moves an axis or dwells; it has done so.
   virtual void motion_noted(const Block& /*block*/) noexcept {}
   /// The PLC has done all functions of this request.
   virtual void acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
@@ -43,6 +60,15 @@ struct RunnerOptions {
   bool continue_at_stop = false;
   /// The operator's switch for M1: off, M1 does nothing and the PLC does not see it.
   bool optional_stop = false;
+  /// Must outlive the runner.
+  const MachineTable* machine_table = &MachineTable::standard();
+  AxisOptions axes{};
+  /// Longest wait for "spindle at speed" before a motion at feed.
+  std::chrono::nanoseconds spindle_timeout = std::chrono::seconds{10};
+  /// May be nullptr: nobody is there. With a panel a stop waits for cycle start.
+  OperatorPanel* panel = nullptr;
+  /// May be nullptr; presses the panel, which must be there.
+  Operator* operator_ = nullptr;
 };
 
 enum class RunOutcome : std::uint8_t {
@@ -69,20 +95,50 @@ class PartProgramRunner {
   [[nodiscard]] RunResult run(const Program& program);
 
  private:
-  tl::expected<ProgramFlow, RunResult> run_block(const Block& block);
-  tl::expected<void, RunResult> give(const Block& block, const FunctionRequest& request);
-  tl::expected<void, RunResult> finish_pending();
-  RunResult failed(const std::string& where, const LogicFailure& failure);
-
+  using Step = tl::expected<void, RunResult>;
   struct Pending {
     const Block* block;
     FunctionRequest request;
   };
+  /// The threads of one run.
+  struct Tasks {
+    explicit Tasks(LogicTask& logic_task) : geometry{notifier}, functions{logic_task, notifier} {}
+    Notifier notifier;
+    GeometryTask geometry;
+    FunctionWorker functions;
+  };
+
+  RunResult run_blocks(const Program& program);
+  tl::expected<ProgramFlow, RunResult> run_block(const Block& block);
+  Step give(const Block& block, const FunctionRequest& request);
+  Step finish_pending();
+  Step finish_pending_if(Acknowledgement acknowledgement);
+  Step move(const Block& block, const Motion& motion);
+  Step wait_for_spindle(const Block& block);
+  Step wait_at_stop(const Block& block);
+  Step wait_while_held(const Block& block);
+  Step set_held(const std::string& where, bool held);
+  Step set_at_tool_change_position(const std::string& where, bool there);
+  /// Waits until `ready()`, and looks at the operator's panel meanwhile.
+  template <typename Ready>
+  Step wait_until(const std::string& where, Ready ready);
+  Step look_at_panel(const std::string& where);
+  Step obey(const std::string& where, OperatorEvent event);
+  [[nodiscard]] bool is_attended() const;
+  [[nodiscard]] Step check(const std::string& where, const tl::expected<void, LogicFailure>& done) const;
 
   LogicTask& logic_task_;
   RunnerOptions options_;
   PartProgramObserver* observer_;
+  std::optional<Tasks> tasks_;
   std::optional<Pending> pending_;
+  std::optional<MotionPlanner> planner_;
+  std::chrono::steady_clock::time_point begun_;
+  std::optional<bool> at_tool_change_position_;
+  bool optional_stop_ = false;
+  bool held_ = false;
+  bool stopped_ = false;
+  bool spindle_has_started_ = false;
 };
 
 }  // namespace kernel_mocks

@@ -23,6 +23,11 @@ inline constexpr std::byte distribution_end{0x80};  ///< DEN, M103: no motion of
 inline constexpr Device program_running{DeviceKind::m, 104};
 inline constexpr Device reset{DeviceKind::m, 105};
 inline constexpr Device feed_hold_active{DeviceKind::m, 106};
+inline constexpr Device at_tool_change_position{DeviceKind::m, 107};  ///< the Z axis
+// The PLC's own: remote RUN and STOP.
+inline constexpr Device plc_forced_mode{DeviceKind::m, 8035};
+inline constexpr Device plc_forced_run{DeviceKind::m, 8036};
+inline constexpr Device plc_forced_stop{DeviceKind::m, 8037};
 
 // PLC to kernel.
 /// First bit of the byte M120 to M127.

@@ -18,6 +18,8 @@ constexpr std::uint16_t strobe_address = m_base + 12;
 
 ScriptedPlc::ScriptedPlc() : scan{obey} {
   set_bit(122, true);
+  set_bit(123, true);
+  set_bit(125, true);
   set_bit(126, true);
 }
 
@@ -73,7 +75,9 @@ void ScriptedPlc::execute(const protocol::fx::Request& request) {
     case Command::write:
       std::copy(request.data.begin(), request.data.end(), place);
       if (request.address == d_base + 200) {
-        log.push_back(fmt::format("D100 = {} {} {}", word(100), word(101), word(102)));
+        log.push_back(request.data.size() == 2
+                          ? fmt::format("D100 = {}", word(100))
+                          : fmt::format("D100 = {} {} {}", word(100), word(101), word(102)));
       } else if (request.address == strobe_address) {
         log.push_back(fmt::format("M96 byte {:02X}", std::to_integer<unsigned>(request.data.front())));
       } else {
