@@ -39,7 +39,7 @@ struct ArchiveConfig {
   std::int64_t bytes_max = std::int64_t{128} << 20;
   std::int64_t wal_bytes_max = std::int64_t{4} << 20;
   std::chrono::nanoseconds power_up_wall_clock{0};  ///< since 1970; times of records count from it
-  std::vector<std::string> signal_names;            ///< by number
+  std::vector<std::string> signal_names{};          ///< by number
 };
 
 enum class ArchiveErrorCode : std::uint8_t {
