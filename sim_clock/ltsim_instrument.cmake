@@ -29,7 +29,7 @@ function(ltsim_instrumented_twin name)
   get_target_property(sources ltsim_${name} SOURCES)
   get_target_property(folder ltsim_${name} SOURCE_DIR)
   get_target_property(links ltsim_${name} INTERFACE_LINK_LIBRARIES)
-  list(TRANSFORM sources PREPEND ${folder}/ REGEX "^[^/]")  # generated ones are absolute
+  list(TRANSFORM sources PREPEND ${folder}/)
   add_library(ltsim_${name}_instrumented STATIC ${sources})
   add_library(ltsim::${name}_instrumented ALIAS ltsim_${name}_instrumented)
   target_include_directories(ltsim_${name}_instrumented PUBLIC ${PROJECT_SOURCE_DIR})

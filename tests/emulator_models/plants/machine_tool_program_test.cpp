@@ -14,7 +14,7 @@ using machine_tool::Y;
 
 /// With scans of 1 ms and of 10 ms.
 struct MachineToolProgram : ::testing::TestWithParam<int> {
-  MachineToolRig rig{machine_tool_source, std::chrono::milliseconds{GetParam()}};
+  MachineToolRig rig{machine_tool_program(), std::chrono::milliseconds{GetParam()}};
   ~MachineToolProgram() override { EXPECT_EQ(rig.broken, std::set<std::string>{}); }
 };
 INSTANTIATE_TEST_SUITE_P(scans, MachineToolProgram, ::testing::Values(1, 10));
@@ -221,7 +221,7 @@ struct MachineToolFailures : ::testing::TestWithParam<FailureCase> {};
 
 TEST_P(MachineToolFailures, end_in_their_alarm_with_safe_outputs_and_recover) {
   const FailureCase& c = GetParam();
-  MachineToolRig rig{machine_tool_source};
+  MachineToolRig rig{machine_tool_program()};
   rig.switch_on();
   rig.select_tool(3);
   rig.give(c.m_code);

@@ -109,12 +109,12 @@ void provoke(MachineToolRig& rig) {
 struct MachineToolRulesBreak : ::testing::TestWithParam<std::string> {};
 
 TEST_P(MachineToolRulesBreak, by_its_name_when_the_program_is_without_it) {
-  MachineToolRig rig{without_rule(machine_tool_source, GetParam())};
+  MachineToolRig rig{without_rule(machine_tool_program(), GetParam())};
   provoke(rig);
   EXPECT_TRUE(rig.broken.contains(GetParam())) << ::testing::PrintToString(rig.broken);
 }
 
-INSTANTIATE_TEST_SUITE_P(all, MachineToolRulesBreak, ::testing::ValuesIn(rules_of(machine_tool_source)),
+INSTANTIATE_TEST_SUITE_P(all, MachineToolRulesBreak, ::testing::ValuesIn(rules_of(machine_tool_program())),
                          [](const auto& tried) {
                            std::string name = tried.param;
                            for (char& letter : name) letter = letter == '-' ? '_' : letter;
@@ -123,14 +123,14 @@ INSTANTIATE_TEST_SUITE_P(all, MachineToolRulesBreak, ::testing::ValuesIn(rules_o
 
 TEST(MachineToolRules, are_all_kept_by_the_whole_program) {
   for (const auto period : {1ms, 10ms}) {
-    MachineToolRig rig{machine_tool_source, period};
+    MachineToolRig rig{machine_tool_program(), period};
     provoke(rig);
     EXPECT_EQ(rig.broken, std::set<std::string>{}) << period.count();
   }
 }
 
 TEST(MachineToolRules, are_marked_in_the_program_but_for_the_one_that_is_the_plcs_own) {
-  EXPECT_EQ(rules_of(machine_tool_source).size(), machine_tool_rules_count - 1);
+  EXPECT_EQ(rules_of(machine_tool_program()).size(), machine_tool_rules_count - 1);
 }
 
 TEST(MachineToolRules, a_plc_that_does_not_run_has_its_outputs_off) {
