@@ -249,7 +249,8 @@ TEST_F(LogicTaskTest, the_observer_is_not_told_of_a_finish_that_did_not_come) {
 TEST_F(LogicTaskTest, a_program_begins_with_a_reset_and_ends_with_running_off) {
   LogicTask logic = task();
   ASSERT_TRUE(logic.begin_program().has_value());
-  EXPECT_EQ(plc.log, (Log{"M96 byte 80", "D100 = 0", "M105 on", "M105 off", "M104 off", "M106 off", "M104 on"}));
+  EXPECT_EQ(plc.log,
+            (Log{"M96 byte 80", "D100 = 0", "M105 on", "M105 off", "M104 off", "M106 off", "M104 on"}));
   ASSERT_TRUE(logic.end_program().has_value());
   EXPECT_EQ(plc.log.back(), "M104 off");
 }

@@ -111,7 +111,8 @@ TEST_F(PartProgramRunnerTest, an_alarm_stops_the_program_names_block_function_an
   EXPECT_EQ(result.message.substr(0, result.message.find(" after")), "block N20 (line 2), M8: PLC alarm 17");
   ASSERT_TRUE(result.failure.has_value());
   EXPECT_EQ(result.failure->alarm_number, 17);
-  EXPECT_EQ(Log(plc.log.end() - 5, plc.log.end()), (Log{"M96 byte 80", "D100 = 0", "M105 on", "M105 off", "M104 off"}));
+  EXPECT_EQ(Log(plc.log.end() - 5, plc.log.end()),
+            (Log{"M96 byte 80", "D100 = 0", "M105 on", "M105 off", "M104 off"}));
 }
 
 TEST_F(PartProgramRunnerTest, a_missing_fin_stops_the_program_and_names_the_function) {
