@@ -24,6 +24,7 @@ constexpr Device word(std::uint16_t number) noexcept { return {DeviceKind::d, nu
 
 constexpr Device watchdog_time = word(8000);
 constexpr Device any_error = special_m(8004);
+constexpr Device memory_hold = special_m(8033);
 constexpr std::uint16_t hardware_error_number = 8061;
 constexpr std::uint16_t operation_error_number = 8067;
 constexpr Device operation_error_line = word(8069);
@@ -113,12 +114,7 @@ void FxPlc::initialise(StartKind start) noexcept {
   const bool cold = start == StartKind::cold;
   machine_.start(cold ? soft_plc::IlMachine::Start::cold : soft_plc::IlMachine::Start::warm);
   // At power-up the memory is clear, but for what a request has written before the first scan.
-  if (!std::exchange(has_run_, true)) return;
-  if (cold) {
-    clear_all_but_special(memory());
-  } else if (memory().get(special_m(8033)) == 0) {
-    clear_unlatched(memory());
-  }
+  if (std::exchange(has_run_, true) && cold) clear_all_but_special(memory());
 }
 
 void FxPlc::read_inputs() noexcept {
@@ -167,6 +163,8 @@ void FxPlc::write_safe_outputs() noexcept {
   terminals_.outputs.reset();
   terminals_.analog_outputs.fill(0);
   machine_.abandon_scan();
+  // What a stopped program said of the machine is true no longer: who polls its devices must not go by them.
+  if (memory().get(memory_hold) == 0) clear_unlatched(memory());
 }
 
 void FxPlc::set_alarm_lamp(bool on) noexcept {

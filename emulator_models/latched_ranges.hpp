@@ -1,4 +1,4 @@
-// Which devices keep their values over STOP to RUN and over loss of power: the ranges as the models are delivered
+// Which devices keep their values over STOP and over loss of power: the ranges as the models are delivered
 // (FX manuals). On a real PLC parameters move their borders; here they are fixed.
 //
 //            M               S             C (and C200 on)            D            T
@@ -12,7 +12,7 @@
 
 namespace emulator_models {
 
-/// From STOP to RUN: clears Y and what is not latched of M, S, T, C and D. X and the special devices stay.
+/// From RUN to STOP: clears Y and what is not latched of M, S, T, C and D. X and the special devices stay.
 void clear_unlatched(DeviceMemory& memory) noexcept;
 /// A cold start: clears latched devices, too.
 void clear_all_but_special(DeviceMemory& memory) noexcept;

@@ -11,7 +11,7 @@ void GuardDoor::advance(Terminals& terminals, SteadyTime now) noexcept {
 
   const bool held = bolt_.is_out() && !lock_broken_;
   if (!held) open_ = pulled_open_;
-  const bool lock = terminals.outputs.test(index_of(Y::door_lock)) && !open_;
+  const bool lock = !terminals.outputs.test(index_of(Y::door_unlock)) && !open_;
   bolt_.order(lock ? Travel::Order::out : Travel::Order::back);
   terminals.inputs.set(index_of(X::door_closed), !open_);
   terminals.inputs.set(index_of(X::door_locked), held && !open_);

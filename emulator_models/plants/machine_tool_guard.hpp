@@ -6,7 +6,7 @@
 
 namespace emulator_models::machine_tool {
 
-/// The bolt follows its solenoid in 100 ms and only falls into a closed door; a locked door stays closed whatever
+/// The solenoid draws the bolt back in 100 ms, a spring pushes it out as fast, into a closed door only; a locked door stays closed whatever
 /// the operator does. A broken lock neither holds nor reports.
 class GuardDoor {
  public:

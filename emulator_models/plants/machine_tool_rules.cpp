@@ -118,7 +118,7 @@ void MachineToolRules::look_at_spindle(const View& view) noexcept {
         view.now);
   bound(feed_at_speed, view.contract.feed_enable && view.spindle_on() && !at_speed, reaction_, view.now);
   bound(door_feed_hold, view.contract.feed_enable && !view.on(X::door_closed), reaction_, view.now);
-  bound(door_unlock, !view.on(Y::door_lock) && (view.turns() || !view.contract.distribution_end), reaction_,
+  bound(door_unlock, view.on(Y::door_unlock) && (view.turns() || !view.contract.distribution_end), reaction_,
         view.now);
   bound(chuck_at_standstill, view.on(Y::chuck_unclamp) && view.turns(), nanoseconds{-1}, view.now);
 }
@@ -137,7 +137,11 @@ void MachineToolRules::look_at_coolant(const View& view) noexcept {
     pressure_seen_ = false;
   }
   pressure_seen_ = pressure_seen_ || view.on(X::lubrication_pressure);
-  if (pump_was_on_ && !pump) warning_is_due_ = !pressure_seen_ && view.now - pump_since_ >= whole_run;
+  if (pump_was_on_ && !pump) {
+    // A run that a stop cuts short says nothing about the pressure.
+    warning_is_due_ = !pressure_seen_ && view.now - pump_since_ >= whole_run && view.contract.plc_runs &&
+                      view.on(X::chain_closed);
+  }
   if (view.contract.warning_number != 0 || view.contract.reset || view.on(X::reset_button)) {
     warning_is_due_ = false;
   }

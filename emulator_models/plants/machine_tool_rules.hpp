@@ -25,7 +25,7 @@ enum class MachineToolRule : std::uint8_t {
   coolant_supervision,       ///< coolant on for more than 3 s without flow
   feed_at_speed,             ///< feed enabled while the ordered spindle is not at speed
   door_feed_hold,            ///< feed enabled with the door open
-  door_unlock,               ///< lock off while the spindle turns or an axis moves
+  door_unlock,               ///< unlocked while the spindle turns or an axis moves
   change_at_standstill,      ///< arm in motion or tool unclamped while the spindle turns
   change_at_position,        ///< arm in motion with Z away from the change position
   arm_and_magazine,          ///< arm and magazine moving together, or the magazine with the arm out

@@ -23,7 +23,7 @@ enum class Y : std::size_t {
   arm_exchange = 014,  ///< pulls both tools, swings, inserts
   tool_unclamp = 015,  ///< springs clamp
   lubrication_pump = 016,
-  door_lock = 017,
+  door_unlock = 017,  ///< without current a spring bolts the door: a PLC that stops leaves it locked
   contactor = 020,
   red_lamp = 021,
   yellow_lamp = 022,

@@ -6,10 +6,7 @@
 #include <thread>
 
 #include "emulator_models/emulator_handler.hpp"
-#include "emulator_models/fx_plc_emulator.hpp"
-#include "emulator_models/machine_plant.hpp"
-#include "emulator_models/machine_program.hpp"
-#include "emulator_models/scan_cycle.hpp"
+#include "emulator_models/programs/machine_tool_program.hpp"
 #include "kernel_mocks/fx_driver.hpp"
 #include "kernel_mocks/logic_task.hpp"
 #include "kernel_mocks/nc_parser.hpp"
@@ -17,7 +14,7 @@
 #include "protocol/shared_memory_port_manager.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
 #include "sim_clock/scenario/scenario.hpp"
-#include "tests/scenarios/function_monitor.hpp"
+#include "tests/scenarios/machine/watched_machine.hpp"
 #include "tests/scenarios/segment_names.hpp"
 
 namespace {
@@ -48,7 +45,8 @@ std::optional<kernel_mocks::RunOutcome> run_kernel(const char* segment, const Pa
   if (!port) return std::nullopt;
   kernel_mocks::FxDriver driver{**port, {}};
   if (!driver.connect()) return std::nullopt;
-  kernel_mocks::LogicTask logic_task{driver, {}, &observer};
+  // The hydraulics need up to two seconds for their pressure.
+  kernel_mocks::LogicTask logic_task{driver, {.ready_timeout = std::chrono::seconds{5}}, &observer};
   kernel_mocks::PartProgramRunner runner{logic_task, {}};
   return runner.run(program()).outcome;
 }
@@ -57,23 +55,21 @@ void run_part_program(ltsim::World& world, const PaperOptions& options) {
   constexpr const char* segment = "handoff";
   scenarios::name_regions(world, segment, options);
   scenarios::FunctionMonitor monitor{world};
-  emulator_models::FxPlcEmulator plc{protocol::fx::Model::fx3u};
-  emulator_models::MachineProgram machine{&monitor};
-  emulator_models::MachinePlant plant;
-  emulator_models::ScanCycle scan{plc, machine, plant};
+  static const auto plc_program = scenarios::compiled_for_fx3u(emulator_models::machine_tool_program());
+  scenarios::WatchedMachine machine{world, plc_program, monitor, std::chrono::milliseconds{10}};
   protocol::SlaveSharedMemoryWrapper slave{segment, options};
-  emulator_models::EmulatorHandler handler{slave, plc};
+  emulator_models::EmulatorHandler handler{slave, machine.port()};
   std::optional<kernel_mocks::RunOutcome> outcome;
 
   world.process("kernel").start("main", [&] {
     outcome = run_kernel(segment, options, monitor);
     handler.request_stop();
-    scan.request_stop();
+    machine.request_stop();
   });
   world.process("emulator").start("port", [&] {
     if (slave.open()) handler.run();
   });
-  world.process("emulator").start("scan", [&] { scan.run(); });
+  world.process("emulator").start("scan", [&] { machine.scan(); });
   world.run();
   // In a machine that is slow enough a wait times out and the kernel stops the program: that is its duty, not
   // a fault.

@@ -96,15 +96,14 @@ TEST_F(MachineToolPlantTest, the_chuck_moves_under_pressure_only) {
   EXPECT_TRUE(sees(X::chuck_unclamped));
 }
 
-TEST_F(MachineToolPlantTest, a_locked_door_stays_closed) {
-  order(Y::door_lock, true);
+TEST_F(MachineToolPlantTest, a_door_is_locked_without_current_and_then_stays_closed) {
   after(0ms);
   after(100ms);
   EXPECT_TRUE(sees(X::door_locked));
   plant.set_door_pulled_open(true);
   after(1s);
   EXPECT_TRUE(sees(X::door_closed));
-  order(Y::door_lock, false);
+  order(Y::door_unlock, true);
   after(0ms);
   after(100ms);
   EXPECT_FALSE(sees(X::door_closed));

@@ -1,0 +1,62 @@
+// The machine tool behind an FX PLC as a scenario runs it: scanned by one task, worked through the programming
+// port by another, and watched: after each scan the interlock rules are looked at, and I27.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+#include "emulator_models/fx_plc.hpp"
+#include "emulator_models/plants/machine_tool_rules.hpp"
+#include "sim_clock/world/world.hpp"
+#include "tests/scenarios/function_monitor.hpp"
+
+namespace scenarios {
+
+/// When the requests of the programming port are served.
+enum class PortService {
+  at_scan_boundary,  ///< one at a time, in phase 1: each write is seen by a scan before the next one comes
+  between_scans,     ///< as they come: several writes can lie between two scans
+};
+
+class WatchedMachine {
+ public:
+  /// @param program  of the machine tool, compiled for an FX3U; must outlive this, as the others
+  WatchedMachine(ltsim::World& world, const emulator_models::soft_plc::IlProgram& program,
+                 FunctionMonitor& functions, std::chrono::nanoseconds period,
+                 PortService service = PortService::at_scan_boundary);
+
+  /// Body of the scanning task, until request_stop().
+  void scan();
+  void request_stop() noexcept { stop_requested_.store(true); }
+
+  [[nodiscard]] emulator_models::IPlcEmulator& port() noexcept {
+    if (service_ == PortService::at_scan_boundary) return port_;
+    return emulator_;
+  }
+  [[nodiscard]] emulator_models::MachineToolPlant& plant() noexcept { return plant_; }
+  [[nodiscard]] std::uint64_t scans_count() const noexcept { return scans_count_; }
+
+ private:
+  void look(emulator_models::SteadyTime now);
+
+  ltsim::World& world_;
+  FunctionMonitor& functions_;
+  std::chrono::nanoseconds period_;
+  PortService service_;
+  emulator_models::FxPlcEmulator emulator_{protocol::fx::Model::fx3u};
+  emulator_models::ScanBoundaryPort port_{emulator_};
+  emulator_models::MachineToolPlant plant_;
+  emulator_models::FxPlc plc_;
+  emulator_models::MachineToolRules rules_;
+  /// Time as the rules see it: it goes on by one period a scan at most. The program can only react when it is
+  /// scanned, and a world may let a scan come late.
+  emulator_models::SteadyTime scanned_time_{};
+  emulator_models::SteadyTime last_look_{};
+  std::uint64_t scans_count_ = 0;
+  std::atomic<bool> stop_requested_{false};
+};
+
+/// The embedded program, or one that `without_rule` has made of it; compiled for an FX3U.
+[[nodiscard]] emulator_models::soft_plc::IlProgram compiled_for_fx3u(std::string_view source);
+
+}  // namespace scenarios
