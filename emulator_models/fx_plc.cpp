@@ -59,6 +59,7 @@ FxPlc::FxPlc(FxPlcEmulator& emulator, const soft_plc::IlProgram& program, Plant 
 soft_plc::ScanStep FxPlc::advance(SteadyTime now, WallTime wall) noexcept {
   now_ = now;
   wall_ = wall;
+  if (is_overdue()) task_.halt(FaultCode::watchdog);
   const soft_plc::ScanStep step = task_.next(now.time_since_epoch(), last_progress_);
   last_progress_ = Progress::finished;
   if (step.action == ScanAction::wait) {
@@ -78,8 +79,13 @@ void FxPlc::system_analysis() noexcept {
   order_mode(power_up);
   show_times(power_up);
   // 0 would switch the watchdog's limit, not the watchdog, off: it counts as the shortest.
-  task_.set_watchdog_limit(
-      std::max<nanoseconds>(std::chrono::milliseconds{memory().get(watchdog_time)}, 1ms));
+  watchdog_limit_ = std::max<nanoseconds>(std::chrono::milliseconds{memory().get(watchdog_time)}, 1ms);
+  task_.set_watchdog_limit(watchdog_limit_);
+}
+
+bool FxPlc::is_overdue() const noexcept {
+  return task_.mode() == soft_plc::RunMode::run && !task_.is_in_scan() &&
+         now_.time_since_epoch() - task_.period().due() > watchdog_limit_;
 }
 
 void FxPlc::order_mode(bool power_up) noexcept {

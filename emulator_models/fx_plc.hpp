@@ -8,8 +8,9 @@
 //
 // Invariants
 //   I1  from phase 1 to the end of the scan the memory is locked: requests and snapshots see it between two scans.
-//   I2  a scan longer than D8000 ms ends in STOP: outputs off, 6105 in D8061, M8061 and M8004 on, lamp CPU-E lit;
-//       a run-time fault of the program likewise, with 67xx in D8067, its line in D8069, M8067, M8004 and PROG-E.
+//   I2  a scan longer than D8000 ms, or one that begins so much too late, ends in STOP: outputs off, 6105 in D8061,
+//       M8061 and M8004 on, lamp CPU-E lit; a run-time fault of the program likewise, with 67xx in D8067, its line in
+//       D8069, M8067, M8004 and PROG-E.
 //   I3  that is cleared by an order of RUN only: the switch from STOP to RUN, or M8035 with M8036.
 // Left out: interrupts, immediate refresh, constant scan (M8039, D8039), the WDT instruction. Not thread-safe.
 #pragma once
@@ -80,6 +81,9 @@ class FxPlc final : private soft_plc::ScanProgram {
 
   void order_mode(bool power_up) noexcept;
   void show_times(bool power_up) noexcept;
+  /// Whether the next scan of RUN has not begun for longer than the watchdog allows: the hardware re-triggers its
+  /// watchdog at the end of each scan, and so must not only look while one is under way.
+  [[nodiscard]] bool is_overdue() const noexcept;
   [[nodiscard]] DeviceMemory& memory() noexcept { return **locked_; }
 
   FxPlcEmulator& emulator_;
@@ -95,6 +99,7 @@ class FxPlc final : private soft_plc::ScanProgram {
   SteadyTime now_;
   WallTime wall_{};
   std::optional<SteadyTime> power_up_;
+  std::chrono::nanoseconds watchdog_limit_{0};
   bool run_switch_ = true;
   bool run_switch_seen_ = true;
   bool cold_start_ordered_ = false;

@@ -45,7 +45,7 @@ inline constexpr std::size_t machine_tool_rules_count = 19;
 /// The devices of the contract as they are after the scan.
 struct MachineToolContract {
   std::uint16_t m_code = 0;
-  std::uint16_t selected_tool = 0;   ///< D110
+  std::uint16_t selected_tool = 0;   ///< D220
   std::uint16_t warning_number = 0;  ///< D121
   bool m_strobe = false;
   bool s_strobe = false;

@@ -65,6 +65,19 @@ TEST(FxPlc, an_endless_loop_is_caught_by_the_watchdog_within_its_limit_and_a_sli
   EXPECT_EQ(rig.plc.mode(), soft_plc::RunMode::stop);
 }
 
+TEST(FxPlc, a_scan_that_begins_too_late_by_more_than_the_limit_is_caught_and_by_the_limit_is_normal) {
+  FxPlcRig rig{"y AT Y0 : BOOL;", "LD TRUE\nST y", {.watchdog_limit = 150ms}};
+  rig.scan();
+  rig.now += 150ms;
+  rig.scan();
+  EXPECT_FALSE(rig.plc.fault().has_value());
+  EXPECT_TRUE(rig.plc.terminals().outputs[0]);
+  rig.now += 150ms + 1ns;
+  rig.scan();
+  EXPECT_EQ(rig.get("D8061"), 6105U);
+  EXPECT_FALSE(rig.plc.terminals().outputs[0]);
+}
+
 TEST(FxPlc, an_order_of_run_clears_a_fault_and_starts_with_a_first_scan) {
   FxPlcRig rig{endless_variables, endless_when_x0, {.watchdog_limit = 200ms, .slice_instructions = 1000}};
   rig.scan();

@@ -66,7 +66,7 @@ TEST_P(MachineToolProgram, fin_falls_after_the_strobes_and_serves_all_of_them) {
   rig.set_m(102, false);
   rig.run_for(50ms);
   EXPECT_FALSE(rig.m(120));
-  EXPECT_EQ(rig.d(110), 4);
+  EXPECT_EQ(rig.d(220), 4);
 }
 
 TEST_P(MachineToolProgram, tools_are_changed_the_short_way_and_found_again) {
@@ -75,7 +75,7 @@ TEST_P(MachineToolProgram, tools_are_changed_the_short_way_and_found_again) {
     rig.select_tool(tool);
     EXPECT_LT(rig.execute(6), 15s) << tool << " alarm " << rig.alarm();
     EXPECT_EQ(rig.plant.changer().tool_in_spindle(), tool);
-    EXPECT_EQ(rig.d(111), tool);
+    EXPECT_EQ(rig.d(221), tool);
   }
   rig.select_tool(7);
   EXPECT_LT(rig.execute(6), 100ms) << "is in the spindle already";

@@ -44,7 +44,7 @@ void MachineToolRig::scan() {
     terminals.analog_outputs[i] = static_cast<std::uint16_t>(d(analog_outputs_word + i));
   }
   const MachineToolContract contract{.m_code = static_cast<std::uint16_t>(d(100)),
-                                     .selected_tool = static_cast<std::uint16_t>(d(110)),
+                                     .selected_tool = static_cast<std::uint16_t>(d(220)),
                                      .warning_number = static_cast<std::uint16_t>(d(121)),
                                      .m_strobe = m(100),
                                      .s_strobe = m(101),

@@ -25,7 +25,7 @@ MachineToolContract contract_in(const DeviceMemory& memory, bool plc_runs) {
     return static_cast<std::uint16_t>(memory.get(Device{DeviceKind::d, number}));
   };
   return {.m_code = word(100),
-          .selected_tool = word(110),
+          .selected_tool = word(220),
           .warning_number = word(121),
           .m_strobe = on(100),
           .s_strobe = on(101),
