@@ -35,6 +35,7 @@ void expect_dialogue(const SerialLine& line, const Dialogue& dialogue) {
 /// The examples that each model answers alike.
 constexpr Dialogue common_dialogues[] = {
     {"ENQ", "05", "06"},
+    {"read Y0-Y17: nothing moves", "02 30 30 30 41 30 30 32 03 36 36", "02 30 30 30 30 03 43 33"},
     {"read Y0-Y7", "02 30 30 30 41 30 30 31 03 36 35", "02 30 30 03 36 33"},
     {"write D8000 = 300", "02 31 30 45 30 30 30 32 32 43 30 31 03 34 31", "06"},
     {"force Y0 on", "02 37 30 30 30 35 03 46 46", "06"},
@@ -48,7 +49,6 @@ constexpr Dialogue common_dialogues[] = {
 
 /// Of FX1N and up: FX1S has neither the devices nor the E commands, and no machine tool at its terminals.
 constexpr Dialogue larger_dialogues[] = {
-    {"read Y0-Y17: the door lock Y17 is on", "02 30 30 30 41 30 30 32 03 36 36", "02 30 30 38 30 03 43 42"},
     {"write D123, D124", "02 31 31 30 46 36 30 34 33 34 31 32 43 44 41 42 03 34 39", "06"},
     {"read D123, D124", "02 30 31 30 46 36 30 34 03 37 34", "02 33 34 31 32 43 44 41 42 03 44 37"},
     {"read C200", "02 30 30 43 30 30 30 34 03 36 41", "02 30 30 30 30 30 30 30 30 03 38 33"},
