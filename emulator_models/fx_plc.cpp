@@ -22,7 +22,6 @@ using std::chrono::nanoseconds;
 constexpr Device special_m(std::uint16_t number) noexcept { return {DeviceKind::m, number}; }
 constexpr Device word(std::uint16_t number) noexcept { return {DeviceKind::d, number}; }
 
-constexpr Device watchdog_time = word(8000);
 constexpr Device any_error = special_m(8004);
 constexpr Device memory_hold = special_m(8033);
 constexpr std::uint16_t hardware_error_number = 8061;
@@ -100,7 +99,7 @@ void FxPlc::order_mode(bool power_up) noexcept {
   if (is_running) return;
   task_.order_reset();
   const bool cold = std::exchange(cold_start_ordered_, false) || power_up;
-  [[maybe_unused]] const bool accepted = task_.order_run(cold ? StartKind::cold : StartKind::warm);
+  [[maybe_unused]] const bool accepted = task_.order_run(cold ? StartKind::cold : config_.start);
 }
 
 void FxPlc::show_times(bool power_up) noexcept {

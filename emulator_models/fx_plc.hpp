@@ -21,7 +21,7 @@
 #include <optional>
 
 #include "emulator_models/fx_plc_emulator.hpp"
-#include "emulator_models/machine_plant.hpp"
+#include "emulator_models/plants/terminals.hpp"
 #include "emulator_models/scan_boundary_port.hpp"
 #include "emulator_models/soft_plc/il_machine.hpp"
 #include "emulator_models/soft_plc/scan_task.hpp"
@@ -34,6 +34,7 @@ struct FxPlcConfig {
       watchdog_limit;                         ///< D8000 at power-up; without: 200 ms. 1 to 32767 ms
   std::uint64_t slice_instructions = 16'384;  ///< after which the watchdog looks
   std::uint64_t scan_instructions_max = soft_plc::IlMachine::default_budget;
+  soft_plc::StartKind start = soft_plc::StartKind::warm;  ///< of RUN after a STOP; at power-up it is cold
 };
 
 class FxPlc final : private soft_plc::ScanProgram {

@@ -7,9 +7,16 @@ void FxPlcLoop::run() noexcept {
     const soft_plc::ScanStep step =
         plc_.advance(std::chrono::steady_clock::now(), std::chrono::system_clock::now());
     if (step.action != soft_plc::ScanAction::wait) continue;
+    report_fault();
     std::unique_lock lock{mutex_};
     if (stopped_.wait_until(lock, SteadyTime{step.until}, [this] { return stop_requested_; })) return;
   }
+}
+
+void FxPlcLoop::report_fault() {
+  if (plc_.fault() == reported_fault_) return;
+  reported_fault_ = plc_.fault();
+  if (listener_) listener_(plc_);
 }
 
 void FxPlcLoop::request_stop() noexcept {

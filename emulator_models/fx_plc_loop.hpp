@@ -1,8 +1,11 @@
-// Scans an FxPlc in real time, in one thread, until it is asked to stop.
+// Scans an FxPlc in real time, in one thread, until it is asked to stop, and tells of faults that come and go.
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "emulator_models/fx_plc.hpp"
 
@@ -10,8 +13,13 @@ namespace emulator_models {
 
 class FxPlcLoop {
  public:
-  /// @param plc  must outlive this; nobody else advances it
-  explicit FxPlcLoop(FxPlc& plc) noexcept : plc_{plc} {}
+  /// Called on the thread that scans, between two scans, the memory unlocked: a new fault, or none any more.
+  using FaultListener = std::function<void(const FxPlc&)>;
+
+  /// @param plc       must outlive this; nobody else advances it
+  /// @param listener  may be empty; must not throw. The next scan waits for it
+  explicit FxPlcLoop(FxPlc& plc, FaultListener listener = {}) noexcept
+      : plc_{plc}, listener_{std::move(listener)} {}
 
   /// Scans until request_stop(); a scan under way is finished first, an endless one by the watchdog.
   void run() noexcept;
@@ -19,7 +27,11 @@ class FxPlcLoop {
   void request_stop() noexcept;
 
  private:
+  void report_fault();
+
   FxPlc& plc_;
+  FaultListener listener_;
+  std::optional<soft_plc::Fault> reported_fault_;
   std::mutex mutex_;
   std::condition_variable stopped_;
   bool stop_requested_ = false;

@@ -5,20 +5,32 @@
 namespace emulator_models {
 
 ScanBoundaryPort::ScanBoundaryPort(FxPlcEmulator& plc, std::chrono::nanoseconds patience) noexcept
-    : plc_{plc}, patience_{patience} {}
+    : plc_{plc}, patience_{patience}, watchdog_time_{plc.read_word(watchdog_time)} {}
 
 protocol::fx::FrameBytes ScanBoundaryPort::process(std::span<const std::byte> request) noexcept {
   Waiting waiting{.request = request, .answer = {}};
   std::unique_lock lock{mutex_};
-  if (queue_length_ == waiting_max) return {};
+  if (closed_ || queue_length_ == waiting_max) return {};
   queue_[queue_length_++] = &waiting;
-  const auto deadline = std::chrono::steady_clock::now() + patience_;
+  const auto deadline = std::chrono::steady_clock::now() + watchdog_time_ + patience_;
   if (!answered_.wait_until(lock, deadline, [&] { return waiting.done; })) withdraw(waiting);
   return waiting.answer;
 }
 
 void ScanBoundaryPort::serve(const FxPlcEmulator::LockedMemory& memory) noexcept {
   const std::lock_guard lock{mutex_};
+  execute_all(memory);
+  // Under the same lock: the request that follows one which has set D8000 waits as long as the scan now may.
+  watchdog_time_ = std::chrono::milliseconds{memory->get(watchdog_time)};
+}
+
+void ScanBoundaryPort::close(const FxPlcEmulator::LockedMemory& memory) noexcept {
+  const std::lock_guard lock{mutex_};
+  execute_all(memory);
+  closed_ = true;
+}
+
+void ScanBoundaryPort::execute_all(const FxPlcEmulator::LockedMemory& memory) noexcept {
   if (queue_length_ == 0) return;
   for (std::size_t i = 0; i < queue_length_; ++i) {
     queue_[i]->answer = plc_.process(queue_[i]->request, memory);

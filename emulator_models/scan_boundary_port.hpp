@@ -1,7 +1,8 @@
 // The programming port of a PLC that is scanned: a request waits until the scan serves it, in the system analysis.
 //
 // One request, one image: what a request reads and writes lies between two scans, whole, and its answer takes up to one
-// scan. When nobody scans, it is given up after a bounded time and met with silence, as a PLC that hangs would.
+// scan. When nobody scans, it is given up after a bounded time and met with silence, as a PLC that hangs would. No scan
+// lasts longer than D8000 allows, so a request waits for that time and the port's patience on top of it.
 //
 // Invariants
 //   I1  requests are executed in the order in which they came, each once or, when given up, not at all.
@@ -20,12 +21,13 @@ namespace emulator_models {
 
 class ScanBoundaryPort final : public IPlcEmulator {
  public:
+  /// Above the longest pause between two scans.
   static constexpr std::chrono::seconds default_patience{1};
   /// Requests that wait at once; one more is met with silence.
   static constexpr std::size_t waiting_max = 8;
 
   /// @param plc       must outlive this
-  /// @param patience  how long a request waits; above the longest scan
+  /// @param patience  how much longer than the watchdog's time a request waits; above the scan period
   explicit ScanBoundaryPort(FxPlcEmulator& plc,
                             std::chrono::nanoseconds patience = default_patience) noexcept;
 
@@ -33,6 +35,8 @@ class ScanBoundaryPort final : public IPlcEmulator {
 
   /// Executes all requests that wait. Called by the scan, which holds the memory.
   void serve(const FxPlcEmulator::LockedMemory& memory) noexcept;
+  /// There will be no scan any more: executes what waits; a later request is met with silence at once.
+  void close(const FxPlcEmulator::LockedMemory& memory) noexcept;
 
  private:
   struct Waiting {
@@ -41,10 +45,13 @@ class ScanBoundaryPort final : public IPlcEmulator {
     bool done = false;
   };
 
+  void execute_all(const FxPlcEmulator::LockedMemory& memory) noexcept;
   void withdraw(const Waiting& waiting) noexcept;
 
   FxPlcEmulator& plc_;
   std::chrono::nanoseconds patience_;
+  std::chrono::milliseconds watchdog_time_;  ///< of the scan that is under way
+  bool closed_ = false;
   std::mutex mutex_;
   std::condition_variable answered_;
   std::array<Waiting*, waiting_max> queue_{};

@@ -34,7 +34,7 @@ constexpr std::uint16_t watchdog_ms_at_power_up = 200;
 }  // namespace
 
 void set_power_up_values(DeviceMemory& memory) noexcept {
-  memory.set(special_d(8000), watchdog_ms_at_power_up);
+  memory.set(watchdog_time, watchdog_ms_at_power_up);
   memory.set(special_d(8001), type_and_version(memory.model()));
   if (memory.model() == Model::fx3u) memory.set(special_d(8101), fx3u_type_and_version);
   set_run_flags(memory, RunMode::stop);

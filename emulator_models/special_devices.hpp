@@ -15,6 +15,9 @@ namespace emulator_models {
 using SteadyTime = std::chrono::steady_clock::time_point;
 using WallTime = std::chrono::system_clock::time_point;
 
+/// D8000: the longest scan, in ms.
+inline constexpr protocol::fx::Device watchdog_time{protocol::fx::DeviceKind::d, 8000};
+
 enum class RunMode : std::uint8_t { stop, first_run_scan, run };
 
 /// D8062: what went wrong on the programming port.

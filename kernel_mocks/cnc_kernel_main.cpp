@@ -49,7 +49,7 @@ struct Arguments {
   bool block_skip = false;
   RunnerOptions runner;
   unsigned read_timeout_ms = 200;
-  unsigned fin_timeout_ms = 10'000;
+  unsigned fin_timeout_ms = 30'000;  ///< the machine's first tool change takes 14 s
   unsigned poll_interval_ms = 5;
   unsigned retries = 2;
   unsigned tmf_ms = 0;

@@ -32,13 +32,10 @@ void expect_dialogue(const SerialLine& line, const Dialogue& dialogue) {
   EXPECT_EQ(line.receive(1), bytes("06"));
 }
 
-/// The examples that each model answers alike. The first scan has passed when M8000-M8007 read 09.
+/// The examples that each model answers alike.
 constexpr Dialogue common_dialogues[] = {
     {"ENQ", "05", "06"},
-    {"read Y0-Y17: the yellow lamp Y11 is lit", "02 30 30 30 41 30 30 32 03 36 36",
-     "02 30 30 30 32 03 43 35"},
-    {"read X0-X17: standing, door and E-stop chain closed", "02 30 30 30 38 30 30 32 03 35 44",
-     "02 36 32 30 30 03 43 42"},
+    {"read Y0-Y17: nothing moves", "02 30 30 30 41 30 30 32 03 36 36", "02 30 30 30 30 03 43 33"},
     {"read Y0-Y7", "02 30 30 30 41 30 30 31 03 36 35", "02 30 30 03 36 33"},
     {"write D8000 = 300", "02 31 30 45 30 30 30 32 32 43 30 31 03 34 31", "06"},
     {"force Y0 on", "02 37 30 30 30 35 03 46 46", "06"},
@@ -50,7 +47,7 @@ constexpr Dialogue common_dialogues[] = {
     {"end of program write", "02 42 03 34 35", "15"},
 };
 
-/// Of FX1N and up: FX1S has neither the devices nor the E commands.
+/// Of FX1N and up: FX1S has neither the devices nor the E commands, and no machine tool at its terminals.
 constexpr Dialogue larger_dialogues[] = {
     {"write D123, D124", "02 31 31 30 46 36 30 34 33 34 31 32 43 44 41 42 03 34 39", "06"},
     {"read D123, D124", "02 30 31 30 46 36 30 34 03 37 34", "02 33 34 31 32 43 44 41 42 03 44 37"},
@@ -80,20 +77,30 @@ constexpr Dialogue fx3u_dialogues[] = {
     {"wide force Y0 on", "02 45 37 30 30 35 45 03 35 39", "06"},
 };
 
-/// Asks for the run state until it is `wanted`: 09 in RUN, 0A in STOP.
-void wait_for_run_state(const SerialLine& line, const char* wanted) {
-  std::vector<std::byte> state;
+/// Asks until the answer is the one of the dialogue.
+void wait_for(const SerialLine& line, const Dialogue& dialogue) {
+  SCOPED_TRACE(dialogue.what);
+  const auto wanted = bytes(dialogue.answer);
+  std::vector<std::byte> answer;
   do {
-    line.send(bytes("02 30 30 31 45 30 30 31 03 36 41"));
-    state = line.receive(6);
-    ASSERT_EQ(state.size(), 6U);
-  } while (state != bytes(wanted));
+    line.send(bytes(dialogue.request));
+    answer = line.receive(wanted.size());
+    ASSERT_EQ(answer.size(), wanted.size());
+  } while (answer != wanted);
 }
+
+constexpr Dialogue in_run{"M8000-M8007 in RUN", "02 30 30 31 45 30 30 31 03 36 41", "02 30 39 03 36 43"};
+constexpr Dialogue in_stop{"M8000-M8007 in STOP", "02 30 30 31 45 30 30 31 03 36 41", "02 30 41 03 37 34"};
+constexpr Dialogue machine_stands{"read X0-X17: spindle stands, chuck clamped, door closed and locked",
+                                  "02 30 30 30 38 30 30 32 03 35 44", "02 30 32 31 41 03 44 37"};
+constexpr Dialogue nothing_wired{"read X0-X17: no machine", "02 30 30 30 38 30 30 32 03 35 44",
+                                 "02 30 30 30 30 03 43 33"};
 
 void expect_worked_examples(const std::string& model, std::span<const Dialogue> dialogues) {
   EmulatorProcess emulator{{"--pty", "--model", model}};
   const SerialLine line{emulator.wait_for_line("pty: ")};
-  wait_for_run_state(line, "02 30 39 03 36 43");
+  wait_for(line, in_run);
+  wait_for(line, model == "FX1S" ? nothing_wired : machine_stands);
   for (const Dialogue& dialogue : common_dialogues) expect_dialogue(line, dialogue);
   if (model != "FX1S")
     for (const Dialogue& dialogue : larger_dialogues) expect_dialogue(line, dialogue);
@@ -103,7 +110,7 @@ void expect_worked_examples(const std::string& model, std::span<const Dialogue> 
   EXPECT_EQ(line.receive(132).size(), 132U);
   expect_dialogue(line, {"force M100 on", "02 37 36 34 30 38 03 30 43", "06"});
   expect_dialogue(line, {"force M8037 on: STOP", "02 37 32 35 30 46 03 31 37", "06"});
-  wait_for_run_state(line, "02 30 41 03 37 34");
+  wait_for(line, in_stop);
 
   emulator.send_signal(SIGTERM);
   EXPECT_EQ(emulator.wait_for_exit(), 0);
