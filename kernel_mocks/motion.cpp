@@ -211,4 +211,12 @@ MotionPlanner::Planned MotionPlanner::arrive(const Block& block, const Position&
   return Motion{kind, duration, position_[z_axis]};
 }
 
+tl::expected<void, NcError> check_motion(const Program& program, const AxisOptions& axes) {
+  MotionPlanner planner{axes};
+  for (const Block& block : program.blocks) {
+    if (const auto planned = planner.plan(block); !planned) return tl::unexpected{planned.error()};
+  }
+  return {};
+}
+
 }  // namespace kernel_mocks

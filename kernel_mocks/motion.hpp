@@ -40,6 +40,7 @@ struct AxisOptions {
 };
 
 enum class MotionKind : std::uint8_t { rapid, feed, dwell };
+inline constexpr std::size_t motion_kind_count = 3;
 
 struct Motion {
   MotionKind kind = MotionKind::rapid;
@@ -88,5 +89,8 @@ class MotionPlanner {
   double feed_ = 0;
   double speed_ = 0;
 };
+
+/// Plans every block: a motion that this machine cannot carry out is refused before anything moves.
+[[nodiscard]] tl::expected<void, NcError> check_motion(const Program& program, const AxisOptions& axes);
 
 }  // namespace kernel_mocks

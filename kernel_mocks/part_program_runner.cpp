@@ -1,5 +1,7 @@
 #include "kernel_mocks/part_program_runner.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "kernel_mocks/plc_signals.hpp"
@@ -27,14 +29,6 @@ tl::unexpected<RunResult> stopped(const Block& block, const char* why) {
       .outcome = RunOutcome::stopped, .message = fmt::format("{}: {}", place_of(block), why), .failure = {}}};
 }
 
-std::optional<NcError> refusal_of_motion(const Program& program, const AxisOptions& axes) {
-  MotionPlanner planner{axes};
-  for (const Block& block : program.blocks) {
-    if (const auto planned = planner.plan(block); !planned) return planned.error();
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 PartProgramRunner::PartProgramRunner(LogicTask& logic_task, const RunnerOptions& options,
@@ -45,8 +39,8 @@ RunResult PartProgramRunner::run(const Program& program) {
   if (const auto checked = check_for_machine(program, *options_.machine_table); !checked) {
     return {.outcome = RunOutcome::refused, .message = to_string(checked.error()), .failure = {}};
   }
-  if (const auto error = refusal_of_motion(program, options_.axes)) {
-    return {.outcome = RunOutcome::refused, .message = to_string(*error), .failure = {}};
+  if (const auto checked = check_motion(program, options_.axes); !checked) {
+    return {.outcome = RunOutcome::refused, .message = to_string(checked.error()), .failure = {}};
   }
   pending_.reset();
   planner_.emplace(options_.axes);
@@ -59,13 +53,13 @@ RunResult PartProgramRunner::run(const Program& program) {
   if (const auto begun = logic_task_.begin_program(); !begun) {
     result = failed("program start", begun.error());
   } else {
+    if (observer_ != nullptr) observer_->program_begun(std::chrono::steady_clock::now());
     tasks_.emplace(logic_task_);
     result = run_blocks(program);
     // The threads end first: what they have begun must not come after the reset.
+    tasks_->functions.stop();
+    abandon_pending(result);
     tasks_.reset();
-    if (pending_ && result.failure && observer_ != nullptr) {
-      observer_->not_acknowledged(*pending_->block, pending_->request, *result.failure);
-    }
     if (result.outcome == RunOutcome::ended) {
       if (const auto ended = logic_task_.end_program(); !ended) result = failed("program end", ended.error());
     }
@@ -112,7 +106,6 @@ tl::expected<ProgramFlow, RunResult> PartProgramRunner::run_block(const Block& b
   if (*motion) {
     if (const auto done = move(block, **motion); !done) return tl::unexpected{done.error()};
   }
-  if (plan->has_motion && observer_ != nullptr) observer_->motion_noted(block);
   if (const auto done = finish_pending_if(Acknowledgement::at_block_end); !done) {
     return tl::unexpected{done.error()};
   }
@@ -134,7 +127,8 @@ PartProgramRunner::Step PartProgramRunner::give(const Block& block, const Functi
   if (auto done = wait_until(where, [&] { return functions.raised_at() || functions.is_done(); }); !done) {
     return done;
   }
-  if (observer_ != nullptr && functions.raised_at()) observer_->given(block, request, *functions.raised_at());
+  if (!functions.raised_at()) return finish_pending();
+  if (observer_ != nullptr) observer_->given(block, request, *functions.raised_at());
   if (request.spindle != SpindleEffect::none) spindle_has_started_ = request.spindle == SpindleEffect::start;
   return finish_pending_if(Acknowledgement::before_going_on);
 }
@@ -162,12 +156,41 @@ PartProgramRunner::Step PartProgramRunner::finish_pending() {
   return {};
 }
 
+/// Its thread has stopped.
+void PartProgramRunner::abandon_pending(const RunResult& why) {
+  if (!pending_) return;
+  const Pending pending = *std::exchange(pending_, std::nullopt);
+  FunctionWorker& functions = tasks_->functions;
+  if (observer_ == nullptr || !functions.raised_at()) return;
+  // It may have ended, unseen, before the run did.
+  if (functions.is_done()) {
+    if (const auto duration = functions.take_result()) {
+      observer_->acknowledged(*pending.block, pending.request, *duration);
+      return;
+    }
+  }
+  observer_->not_acknowledged(*pending.block, pending.request,
+                              why.failure.value_or(LogicFailure{.fault = LogicFault::interrupted}));
+}
+
 PartProgramRunner::Step PartProgramRunner::move(const Block& block, const Motion& motion) {
-  const std::string where = place_of(block);
   if (motion.kind == MotionKind::feed) {
     if (auto done = finish_pending_if(Acknowledgement::before_feed); !done) return done;
     if (auto done = wait_for_spindle(block); !done) return done;
   }
+  const auto begun = std::chrono::steady_clock::now();
+  auto done = carry_out(block, motion);
+  if (observer_ != nullptr) {
+    const bool in_no_time = motion.duration == std::chrono::nanoseconds{0};
+    observer_->moved(block, motion.kind,
+                     in_no_time ? motion.duration : std::chrono::steady_clock::now() - begun,
+                     done.has_value());
+  }
+  return done;
+}
+
+PartProgramRunner::Step PartProgramRunner::carry_out(const Block& block, const Motion& motion) {
+  const std::string where = place_of(block);
   const bool arrives_at_tool_change = motion.z >= options_.axes.tool_change_z;
   if (motion.duration == std::chrono::nanoseconds{0}) {
     return set_at_tool_change_position(where, arrives_at_tool_change);

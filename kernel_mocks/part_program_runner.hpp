@@ -36,13 +36,18 @@ class PartProgramObserver {
 
   using TimePoint = std::chrono::steady_clock::time_point;
 
+  /// The PLC is ready, "program running" is on.
+  virtual void program_begun(TimePoint /*at*/) noexcept {}
   /// The strobes of the request are up.
   virtual void given(const Block& /*block*/, const FunctionRequest& /*request*/, TimePoint /*at*/) noexcept {}
   /// No FIN for a request whose strobes were up.
   virtual void not_acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
                                 const LogicFailure& /*failure*/) noexcept {}
-  /// The block moves an axis or dwells; it has done so.
-  virtual void motion_noted(const Block& /*block*/) noexcept {}
+  /// The block moved an axis or dwelled.
+  /// @param duration  holds included; 0 when motion takes no time
+  /// @param reached   false: the run ended before the motion did
+  virtual void moved(const Block& /*block*/, MotionKind /*kind*/, std::chrono::nanoseconds /*duration*/,
+                     bool /*reached*/) noexcept {}
   /// The PLC has done all functions of this request.
   virtual void acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
                             std::chrono::nanoseconds /*duration*/) noexcept {}
@@ -113,7 +118,9 @@ class PartProgramRunner {
   Step give(const Block& block, const FunctionRequest& request);
   Step finish_pending();
   Step finish_pending_if(Acknowledgement acknowledgement);
+  void abandon_pending(const RunResult& why);
   Step move(const Block& block, const Motion& motion);
+  Step carry_out(const Block& block, const Motion& motion);
   Step wait_for_spindle(const Block& block);
   Step wait_at_stop(const Block& block);
   Step wait_while_held(const Block& block);
