@@ -15,6 +15,13 @@ TimedPlc::TimedPlc() {
   port.scan = [this](ScriptedPlc&) { scan(); };
 }
 
+void TimedPlc::make_well() {
+  port.silent_from_request = 0;
+  for (const int m : {122, 123, 125, 126}) port.set_bit(static_cast<std::uint16_t>(m), true);
+  port.set_bit(121, false);
+  fin = nullptr;
+}
+
 std::optional<TimedPlc::Clock::time_point> TimedPlc::program_start() const {
   const auto found = std::ranges::find(port.log, "M104 on");
   if (found == port.log.end()) return std::nullopt;
@@ -59,7 +66,7 @@ void TimedPlc::scan() {
   if (const auto start = program_start()) {
     std::erase_if(later_, [&](const Later& later) {
       if (now - *start < later.at) return false;
-      port.set_bit(later.m, later.on);
+      later.what();
       return true;
     });
   }

@@ -30,7 +30,15 @@ class TimedPlc {
   /// From the strobe to FIN, by M code; at once where there is none.
   std::map<std::uint16_t, std::chrono::nanoseconds> durations;
   /// Sets a bit at a time since the program start.
-  void set_later(std::chrono::nanoseconds at, std::uint16_t m, bool on) { later_.push_back({at, m, on}); }
+  void set_later(std::chrono::nanoseconds at, std::uint16_t m, bool on) {
+    do_later(at, [this, m, on] { port.set_bit(m, on); });
+  }
+  /// With the first request after that time.
+  void do_later(std::chrono::nanoseconds at, std::function<void()> what) {
+    later_.push_back({at, std::move(what)});
+  }
+  /// Answers again, ready for a program start, and obedient.
+  void make_well();
   /// Instead of the rule that FIN follows the strobes. Gets the time since a strobe rose; nothing while none is on.
   std::function<bool(std::optional<std::chrono::nanoseconds>)> fin;
 
@@ -49,8 +57,7 @@ class TimedPlc {
  private:
   struct Later {
     std::chrono::nanoseconds at;
-    std::uint16_t m;
-    bool on;
+    std::function<void()> what;
   };
 
   void scan();
