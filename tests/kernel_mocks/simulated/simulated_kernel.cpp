@@ -92,33 +92,15 @@ void SimulatedKernel::in_world(const std::function<void()>& body) {
   EXPECT_EQ(outcome, ltsim::Outcome{});
 }
 
-RunResult SimulatedKernel::run_here(const Program& program) {
-  FxDriver driver{plc.port, {.retries = 0}};
-  LogicTask logic_task{driver, logic};
-  return PartProgramRunner{logic_task, runner, observer}.run(program);
-}
-
 RunResult SimulatedKernel::run_program(std::string_view text) {
   const Program program = parse_program(text).value();
   RunResult result;
-  in_world([&] { result = run_here(program); });
-  return result;
-}
-
-void SimulatedKernel::run_program_randomly(std::string_view text, unsigned count,
-                                           const std::function<void()>& again,
-                                           const std::function<void(const RunResult&)>& check) {
-  const Program program = parse_program(text).value();
-  RunResult result;
-  bool begun = false;
-  const ltsim::Outcome outcome = run_randomly(count, [&](ltsim::World& world) {
-    if (begun) check(result);
-    begun = true;
-    again();
-    world.process("kernel").start("main", [&] { result = run_here(program); });
+  in_world([&] {
+    FxDriver driver{plc.port, {.retries = 0}};
+    LogicTask logic_task{driver, logic};
+    result = PartProgramRunner{logic_task, runner, observer}.run(program);
   });
-  EXPECT_EQ(outcome, ltsim::Outcome{});
-  check(result);
+  return result;
 }
 
 }  // namespace kernel_mocks

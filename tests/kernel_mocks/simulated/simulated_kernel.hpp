@@ -75,17 +75,11 @@ class SimulatedKernel : public ltsim::WorldTest {
   void in_world(const std::function<void()>& body);
   /// Runs a part program so, by a DirectLink.
   RunResult run_program(std::string_view text);
-  /// The same with the part program's threads taking turns as chance wants, `count` times. `again` begins each.
-  void run_program_randomly(std::string_view text, unsigned count, const std::function<void()>& again,
-                            const std::function<void(const RunResult&)>& check);
 
   TimedPlc plc;
   LogicTaskOptions logic;
   RunnerOptions runner;
   PartProgramObserver* observer = nullptr;
-
- private:
-  RunResult run_here(const Program& program);
 };
 
 /// What the strobe byte holds, as the PLC's log shows it.
