@@ -23,7 +23,7 @@ std::optional<AxisLimit> parse_axis_limit(std::string_view text) {
   if (axis == std::string_view::npos || colon == std::string_view::npos) return std::nullopt;
   const auto min = number(text.substr(2, colon - 2));
   const auto max = number(text.substr(colon + 1));
-  if (!min || !max || *min > *max) return std::nullopt;
+  if (!min || !max || *min > 0 || *max < 0) return std::nullopt;
   return AxisLimit{axis, {*min, *max}};
 }
 

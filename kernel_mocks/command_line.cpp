@@ -62,12 +62,12 @@ void add_options(CLI::App& app, CommandLine& arguments) {
              axes.travel[limit.axis] = limit.travel;
            }
          },
-         "Travel of an axis in machine coordinates, e.g. X=-50:650; may be given for each axis")
+         "Travel of an axis in machine coordinates, e.g. X=-50:650; may be given for each axis; else endless")
       ->check(CLI::Validator{[](const std::string& text) {
                                return parse_axis_limit(text)
                                           ? ""
-                                          : "an axis limit is an axis, its least and its greatest "
-                                            "position: X=-50:650";
+                                          : "an axis limit is an axis, its least and its greatest position, "
+                                            "with zero between them: X=-50:650";
                              },
                              "AXIS=MIN:MAX"})
       ->expected(1)

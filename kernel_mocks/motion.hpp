@@ -70,7 +70,8 @@ class MotionPlanner {
   Planned set_offset(const Block& block, GTenths code);
   Planned to_reference(const Block& block);
   Planned feed_to(const Block& block, const Position& target, double length_mm);
-  [[nodiscard]] tl::expected<double, NcFault> arc_length(const Block& block, const Position& target) const;
+  Planned along_arc(const Block& block, const Position& target);
+  [[nodiscard]] std::optional<std::size_t> axis_beyond_travel(const Position& position) const;
   Planned arrive(const Block& block, const Position& target, MotionKind kind, double minutes);
   [[nodiscard]] double rapid_minutes(const Position& from, const Position& to) const;
   [[nodiscard]] double scaled(std::size_t axis, const Word& word) const;

@@ -79,8 +79,8 @@ TEST(AxisLimitText, is_an_axis_and_two_positions) {
 }
 
 TEST(AxisLimitText, anything_else_is_refused) {
-  for (const char* const text :
-       {"", "X", "X=", "X=1", "X=1:", "X=:1", "Q=0:1", "X=2:1", "X=0:1x", "X=nan:1", "X:0=1", "=0:1"}) {
+  for (const char* const text : {"", "X", "X=", "X=1", "X=1:", "X=:1", "Q=0:1", "X=2:1", "X=1:2", "X=-2:-1",
+                                 "X=0:1x", "X=nan:1", "X:0=1", "=0:1"}) {
     EXPECT_FALSE(parse_axis_limit(text).has_value()) << text;
   }
 }
