@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "kernel_mocks/command_line.hpp"
 #include "kernel_mocks/console_report.hpp"
 #include "kernel_mocks/machine_table_file.hpp"
 #include "kernel_mocks/nc_parser.hpp"
@@ -23,7 +24,6 @@
 #include "kernel_mocks/part_program_file.hpp"
 #include "kernel_mocks/part_program_runner.hpp"
 #include "kernel_mocks/polled_link.hpp"
-#include "protocol/paper_command_line.hpp"
 #include "protocol/posix_port_manager.hpp"
 #include "protocol/role_lock.hpp"
 #include "protocol/shared_memory_port_manager.hpp"
@@ -40,81 +40,9 @@ constexpr int exit_own_fault = 3;
 
 std::atomic<bool> stop_asked_for{false};
 
-struct Arguments {
-  std::string file;
-  std::string segment;
-  std::string device;
-  std::string model = "FX3U";
-  bool check_only = false;
-  bool block_skip = false;
-  RunnerOptions runner;
-  unsigned read_timeout_ms = 200;
-  unsigned fin_timeout_ms = 30'000;  ///< the machine's first tool change takes 14 s
-  unsigned poll_interval_ms = 5;
-  unsigned retries = 2;
-  unsigned tmf_ms = 0;
-  unsigned tfin_ms = 0;
-  unsigned enq_wait_ms = 0;
-  unsigned request_wait_ms = 0;
-  std::string polling = "direct";
-  std::string machine_table;
-  std::string operator_script;
-  unsigned baud_rate = 9600;
-  protocol::PaperOptions paper;
-};
-
 int complain(int exit_code, const std::string& message) {
   std::fprintf(stderr, "cnc-kernel: %s\n", message.c_str());
   return exit_code;
-}
-
-void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("program", arguments.file, "Part program file (ISO-7bit)")->required();
-  auto* const segment =
-      app.add_option("--segment", arguments.segment, "Shared-memory segment of a PLC emulator");
-  app.add_option("--port", arguments.device, "Serial device of a PLC, e.g. /dev/ttyUSB0 or /dev/pts/3")
-      ->excludes(segment);
-  app.add_flag("--check", arguments.check_only, "Only read and check the part program; no PLC is needed");
-  app.add_option("--model", arguments.model, "PLC model: FX1S, FX1N, FX2N or FX3U")->capture_default_str();
-  app.add_flag("--skip-optional-blocks", arguments.block_skip,
-               "Operator's switch for blocks that begin with /");
-  app.add_flag("--optional-stop", arguments.runner.optional_stop, "Operator's switch for M1");
-  app.add_flag("--continue-at-m0", arguments.runner.continue_at_stop,
-               "Go on after M0 (and M1) as if cycle start had been pressed; without it the run ends there");
-  app.add_option("--read-timeout-ms", arguments.read_timeout_ms, "Longest wait for an answer of the PLC")
-      ->check(CLI::Range(1, 3'600'000))
-      ->capture_default_str();
-  app.add_option("--retries", arguments.retries, "Repetitions of a request without a good answer")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  app.add_option("--fin-timeout-ms", arguments.fin_timeout_ms, "Longest wait for FIN")
-      ->check(CLI::Range(1, 86'400'000))
-      ->capture_default_str();
-  app.add_option("--poll-interval-ms", arguments.poll_interval_ms, "Pause between two looks for FIN")
-      ->check(CLI::Range(0, 60'000))
-      ->capture_default_str();
-  app.add_option("--tmf-ms", arguments.tmf_ms, "From the code to its strobe")->check(CLI::Range(0, 60'000));
-  app.add_option("--tfin-ms", arguments.tfin_ms, "Shortest FIN that counts")->check(CLI::Range(0, 60'000));
-  app.add_option("--enq-wait-ms", arguments.enq_wait_ms, "Fixed pause after ENQ")
-      ->check(CLI::Range(0, 60'000));
-  app.add_option("--request-wait-ms", arguments.request_wait_ms, "Fixed pause after each request")
-      ->check(CLI::Range(0, 60'000));
-  app.add_option("--polling", arguments.polling,
-                 "Who uses the port: each task (direct), or one thread (helper)")
-      ->check(CLI::IsMember({"direct", "helper"}))
-      ->capture_default_str();
-  app.add_option("--machine-table", arguments.machine_table, "M functions of the machine (TOML)");
-  app.add_option("--operator", arguments.operator_script, "What the operator presses when (TOML)");
-  app.add_option("--motion-percent", arguments.runner.axes.time_percent,
-                 "Motion lasts so many percent of its time; 0: none at all")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  app.add_option("--baud", arguments.baud_rate, "Bits per second of the serial device")
-      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
-      ->capture_default_str();
-  protocol::add_paper_options(app, arguments.paper, protocol::PaperSide::kernel);
-  app.footer(
-      "Exit codes: 0 ran to its end, 1 stopped or refused, 2 bad usage or unreadable program, 3 own fault.");
 }
 
 /// SIGINT and SIGTERM ask for a stop; the second one ends the process whatever it waits for. A thread waits
@@ -135,7 +63,7 @@ void stop_on_signals() {
   }}.detach();
 }
 
-int run_program(const Program& program, const Arguments& arguments, protocol::fx::Model model,
+int run_program(const Program& program, const CommandLine& arguments, protocol::fx::Model model,
                 protocol::SerialPort& port, const std::string& where, const std::string& no_plc_hint) {
   FxDriver driver{port,
                   {.model = model,
@@ -175,10 +103,11 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
   const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
   link.reset();  // its thread counts, too
   const FxDriver::Counters& counters = driver.counters();
-  fmt::print("{} {:.2f} s: {} handshakes, {} motion blocks noted; {} requests, {} retries, {} time-outs\n",
+  fmt::print("{} {:.2f} s: {} handshakes, {} motions; {} requests, {} retries, {} time-outs\n",
              result.outcome == RunOutcome::ended ? "program ended after" : "program stopped after",
              duration.count(), report.function_count(), report.motion_count(), counters.requests,
              counters.retries, counters.time_outs);
+  if (arguments.table) fmt::print("{}", report.table().to_text());
   std::fflush(stdout);
   switch (result.outcome) {
     case RunOutcome::ended:
@@ -195,7 +124,7 @@ int run_program(const Program& program, const Arguments& arguments, protocol::fx
   return exit_own_fault;
 }
 
-int run_on_segment(const Program& program, Arguments arguments, protocol::fx::Model model) {
+int run_on_segment(const Program& program, CommandLine arguments, protocol::fx::Model model) {
   const std::string start_hint = fmt::format("Start one: plc-emulator --segment {}", arguments.segment);
   const std::string where = fmt::format("segment '{}'", arguments.segment);
   protocol::RoleLock role{arguments.segment, protocol::Role::kernel};
@@ -218,7 +147,7 @@ int run_on_segment(const Program& program, Arguments arguments, protocol::fx::Mo
       fmt::format("If one is running, it was started with other options or hangs. {}", start_hint));
 }
 
-int run_on_device(const Program& program, const Arguments& arguments, protocol::fx::Model model) {
+int run_on_device(const Program& program, const CommandLine& arguments, protocol::fx::Model model) {
   protocol::PosixPortManager ports{{.baud_rate = arguments.baud_rate}};
   const auto port = ports.port(arguments.device);
   if (!port) return complain(exit_stopped, fmt::format("{}: {}", arguments.device, to_string(port.error())));
@@ -227,7 +156,7 @@ int run_on_device(const Program& program, const Arguments& arguments, protocol::
 }
 
 int checked_main(int argc, char** argv) {
-  Arguments arguments;
+  CommandLine arguments;
   CLI::App app{"Runs a part program against a PLC or a PLC emulator."};
   add_options(app, arguments);
   try {
@@ -277,6 +206,9 @@ int checked_main(int argc, char** argv) {
     arguments.runner.operator_ = &*scripted;
   }
   if (const auto checked = check_for_machine(*program, table); !checked) {
+    return complain(exit_stopped, fmt::format("{}: {}", arguments.file, to_string(checked.error())));
+  }
+  if (const auto checked = check_motion(*program, arguments.runner.axes); !checked) {
     return complain(exit_stopped, fmt::format("{}: {}", arguments.file, to_string(checked.error())));
   }
   if (arguments.check_only) {

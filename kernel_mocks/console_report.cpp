@@ -16,9 +16,19 @@ void print_line(const std::string& line) noexcept {
 
 }  // namespace
 
+void ConsoleReport::given(const Block& block, const FunctionRequest& request, TimePoint at) noexcept {
+  table_.given(block, request, at);
+}
+
+void ConsoleReport::not_acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
+                                     const LogicFailure& failure) noexcept {
+  table_.not_acknowledged(failure, std::chrono::steady_clock::now());
+}
+
 void ConsoleReport::acknowledged(const Block& block, const FunctionRequest& request,
                                  std::chrono::nanoseconds duration) noexcept {
   ++function_count_;
+  table_.acknowledged(duration);
   print_line(fmt::format("{:<9} {:<20} FIN after {:.2f} s", name_of(block), to_string(request),
                          std::chrono::duration<double>(duration).count()));
   show_outputs();
@@ -28,7 +38,11 @@ void ConsoleReport::stop_passed(const Block& block) noexcept {
   print_line(fmt::format("{:<9} program stop: going on at once", name_of(block)));
 }
 
-void ConsoleReport::motion_noted(const Block& /*block*/) noexcept { ++motion_count_; }
+void ConsoleReport::moved(const Block& /*block*/, MotionKind kind, std::chrono::nanoseconds duration,
+                          bool reached) noexcept {
+  ++motion_count_;
+  table_.moved(kind, duration, reached);
+}
 
 void ConsoleReport::show_outputs() noexcept {
   using protocol::fx::Device;

@@ -9,14 +9,16 @@ namespace kernel_mocks {
 FunctionWorker::FunctionWorker(LogicTask& logic_task, Notifier& notifier)
     : logic_task_{logic_task}, notifier_{notifier}, thread_{[this] { run(); }} {}
 
-FunctionWorker::~FunctionWorker() {
+FunctionWorker::~FunctionWorker() { stop(); }
+
+void FunctionWorker::stop() noexcept {
   {
     const std::scoped_lock lock{mutex_};
     stopping_ = true;
     if (request_) logic_task_.abort();
   }
   given_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void FunctionWorker::give(const FunctionRequest& request) noexcept {

@@ -23,8 +23,11 @@ class FunctionWorker {
   FunctionWorker(LogicTask& logic_task, Notifier& notifier);
   FunctionWorker(const FunctionWorker&) = delete;
   FunctionWorker& operator=(const FunctionWorker&) = delete;
-  /// Aborts the handshake under way.
+  /// As stop().
   ~FunctionWorker();
+
+  /// Aborts the handshake under way, whose result comes at once; takes no request any more.
+  void stop() noexcept;
 
   /// The result of the request before must have been taken.
   void give(const FunctionRequest& request) noexcept;

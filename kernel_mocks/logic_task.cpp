@@ -1,18 +1,15 @@
 #include "kernel_mocks/logic_task.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "kernel_mocks/plc_signals.hpp"
 #include "protocol/check.hpp"
 
 namespace kernel_mocks {
 namespace {
-
-double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 tl::unexpected<LogicFailure> link_lost(FxDriverError error) {
   return tl::unexpected{LogicFailure{.fault = LogicFault::link_lost, .link = error}};
@@ -28,34 +25,6 @@ constexpr bool is_on(std::byte status, std::byte signal) noexcept {
 }
 
 }  // namespace
-
-std::string to_string(const LogicFailure& failure) {
-  switch (failure.fault) {
-    case LogicFault::link_lost:
-      return fmt::format("the link to the PLC failed: {}", to_string(failure.link));
-    case LogicFault::alarm:
-      return fmt::format("PLC alarm {} after {:.2f} s", failure.alarm_number, seconds(failure.after));
-    case LogicFault::emergency_stop:
-      return fmt::format("emergency stop after {:.2f} s", seconds(failure.after));
-    case LogicFault::not_ready:
-      return fmt::format("the PLC does not enable the cycle start (waited {:.2f} s)", seconds(failure.after));
-    case LogicFault::fin_missing:
-      return fmt::format("no FIN from the PLC within {:.2f} s", seconds(failure.after));
-    case LogicFault::fin_stuck:
-      return fmt::format("the PLC's FIN has not gone off within {:.2f} s", seconds(failure.after));
-    case LogicFault::interrupted:
-      return "interrupted";
-    case LogicFault::spindle_not_at_speed:
-      return fmt::format("the spindle has not come to speed within {:.2f} s", seconds(failure.after));
-    case LogicFault::operator_reset:
-      return "the operator pressed reset";
-    case LogicFault::operator_abort:
-      return "the operator ended the program";
-    case LogicFault::operator_emergency_stop:
-      return "the operator pressed emergency stop";
-  }
-  return "unknown fault";
-}
 
 LogicTask::LogicTask(FxDriver& driver, const LogicTaskOptions& options, LogicTaskObserver* observer,
                      const std::atomic<bool>* stop)
@@ -84,7 +53,7 @@ tl::expected<void, LogicFailure> LogicTask::raise(const FunctionRequest& request
   values_ = {request.m.value_or(0), request.s.value_or(values_[1]), request.t.value_or(values_[2])};
   if (auto done = as_logic(link_.write_words(signals::m_code, values_)); !done) return done;
 
-  if (options_.tmf > std::chrono::nanoseconds{0}) std::this_thread::sleep_for(options_.tmf);
+  if (auto done = wait_tmf(); !done) return done;
   const auto strobe = [](bool wanted, std::byte bit) { return wanted ? bit : std::byte{0}; };
   if (auto done = set_strobes(strobe(request.m.has_value(), signals::strobe_m) |
                               strobe(request.s.has_value(), signals::strobe_s) |
@@ -197,6 +166,16 @@ tl::expected<void, LogicFailure> LogicTask::wait_until_ready() {
     }
     std::this_thread::sleep_for(options_.poll_interval);
   }
+}
+
+tl::expected<void, LogicFailure> LogicTask::wait_tmf() {
+  const auto end = Clock::now() + options_.tmf;
+  while (!interrupted()) {
+    const auto now = Clock::now();
+    if (now >= end) return {};
+    std::this_thread::sleep_until(std::min(end, now + options_.poll_interval));
+  }
+  return tl::unexpected{LogicFailure{.fault = LogicFault::interrupted}};
 }
 
 tl::expected<void, LogicFailure> LogicTask::wait_for_fin(bool on, Clock::time_point since) {

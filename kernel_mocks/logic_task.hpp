@@ -30,6 +30,7 @@
 #include <tl/expected.hpp>
 
 #include "kernel_mocks/block_plan.hpp"
+#include "kernel_mocks/logic_failure.hpp"
 #include "kernel_mocks/plc_link.hpp"
 
 namespace kernel_mocks {
@@ -53,33 +54,6 @@ class LogicTaskObserver {
   LogicTaskObserver(const LogicTaskObserver&) = default;
   LogicTaskObserver& operator=(const LogicTaskObserver&) = default;
 };
-
-enum class LogicFault : std::uint8_t {
-  link_lost,                ///< an exchange with the PLC failed
-  alarm,                    ///< the PLC reports an alarm
-  emergency_stop,           ///< the emergency-stop chain is open
-  not_ready,                ///< the PLC does not allow a cycle start
-  fin_missing,              ///< no FIN within the time-out
-  fin_stuck,                ///< FIN did not go off within the time-out
-  interrupted,              ///< somebody asked for a stop
-  spindle_not_at_speed,     ///< a motion at feed waited for it in vain
-  operator_reset,           ///< the operator pressed reset
-  operator_abort,           ///< the operator ended the program
-  operator_emergency_stop,  ///< the operator pressed the kernel's emergency stop
-};
-
-struct LogicFailure {
-  LogicFault fault = LogicFault::link_lost;
-  /// For alarm: the PLC's alarm number; 0 when it could not be read.
-  std::uint16_t alarm_number = 0;
-  /// For link_lost.
-  FxDriverError link = FxDriverError::no_answer;
-  /// Since the wait began.
-  std::chrono::nanoseconds after{0};
-};
-
-/// "PLC alarm 17", "no FIN from the PLC within 10.0 s"
-[[nodiscard]] std::string to_string(const LogicFailure& failure);
 
 struct LogicTaskOptions {
   std::chrono::nanoseconds poll_interval = std::chrono::milliseconds{5};
@@ -147,6 +121,7 @@ class LogicTask {
 
   tl::expected<void, LogicFailure> set_strobes(std::byte strobes);
   tl::expected<void, LogicFailure> wait_until_ready();
+  tl::expected<void, LogicFailure> wait_tmf();
   tl::expected<void, LogicFailure> wait_for_fin(bool on, Clock::time_point since);
   tl::expected<std::byte, LogicFailure> read_status(Clock::time_point not_before);
   tl::expected<void, LogicFailure> check_health(std::byte status, Clock::time_point since);

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "kernel_mocks/arc.hpp"
 
 namespace kernel_mocks {
 namespace {
 
 constexpr double mm_per_inch = 25.4;
-/// Start and end of an arc may differ so much in their distance from the centre: programs are rounded.
-constexpr double radius_tolerance_mm = 0.02;
+/// Sums of rounded numbers end beside their place by less than this.
+constexpr double travel_tolerance = 1e-6;
 
 double number(const Word& word) {
   return static_cast<double>(word.value.units()) / static_cast<double>(Decimal::units_per_one);
@@ -50,11 +51,7 @@ MotionPlanner::Planned MotionPlanner::plan(const Block& block) {
                                            block.find('K') != nullptr || block.find('R') != nullptr);
   if (!has_axis(block) && !arc) return std::nullopt;
   const Position target = target_of(block, non_modal == GTenths{530});
-  if (arc) {
-    const auto length = arc_length(block, target);
-    if (!length) return tl::unexpected{error_at(length.error(), block, block.find('R'))};
-    return feed_to(block, target, *length);
-  }
+  if (arc) return along_arc(block, target);
   if (motion_ == 0) return arrive(block, target, MotionKind::rapid, rapid_minutes(position_, target));
   const auto distance = [&](std::initializer_list<std::size_t> axes) {
     double squares = 0;
@@ -151,55 +148,50 @@ double MotionPlanner::rapid_minutes(const Position& from, const Position& to) co
   return minutes;
 }
 
-tl::expected<double, NcFault> MotionPlanner::arc_length(const Block& block, const Position& target) const {
+MotionPlanner::Planned MotionPlanner::along_arc(const Block& block, const Position& target) {
   // First and second axis of the plane in the sense in which G3 turns from one to the other, and the third.
   const std::size_t first = plane_ == 170 ? 0 : plane_ == 180 ? 2 : 1;
   const std::size_t second = (first + 1) % 3;
   const std::size_t third = (first + 2) % 3;
-  const double along_first = target[first] - position_[first];
-  const double along_second = target[second] - position_[second];
-  const double chord = std::hypot(along_first, along_second);
-  const double full = 2 * std::numbers::pi;
-  double radius = 0;
-  double sweep = 0;
-  if (const Word* const word = block.find('R')) {
-    radius = std::abs(number(*word)) * mm_per_unit_;
-    if (chord == 0 || chord / 2 > radius + radius_tolerance_mm)
-      return tl::unexpected{NcFault::arc_radius_too_small};
-    sweep = 2 * std::asin(std::min(1.0, chord / 2 / radius));
-    // A negative radius chooses the longer of the two arcs.
-    if (word->value.is_negative()) sweep = full - sweep;
-  } else {
-    const auto centre = [&](std::size_t axis) {
-      const Word* const offset = block.find("IJK"[axis]);
-      const double value = offset == nullptr ? 0 : number(*offset) * mm_per_unit_;
-      return absolute_centre_ ? value + offset_[axis] - position_[axis] : value;
-    };
-    const double c1 = centre(first);
-    const double c2 = centre(second);
-    radius = std::hypot(c1, c2);
-    if (radius == 0) return tl::unexpected{NcFault::arc_radius_too_small};
-    if (std::abs(std::hypot(along_first - c1, along_second - c2) - radius) > radius_tolerance_mm) {
-      return tl::unexpected{NcFault::arc_end_off_circle};
+  const PlanePoint end{target[first] - position_[first], target[second] - position_[second]};
+  const bool clockwise = motion_ == 20;
+  const Word* const radius = block.find('R');
+  const auto centre = [&](std::size_t axis) {
+    const Word* const offset = block.find("IJK"[axis]);
+    const double value = offset == nullptr ? 0 : number(*offset) * mm_per_unit_;
+    return absolute_centre_ ? value + offset_[axis] - position_[axis] : value;
+  };
+  auto arc = radius != nullptr ? Arc::by_radius(end, number(*radius) * mm_per_unit_, clockwise)
+                               : Arc::by_centre(end, {centre(first), centre(second)}, clockwise);
+  if (!arc) return tl::unexpected{error_at(arc.error(), block, radius)};
+  if (const Word* const turns = block.find('P')) arc->add_turns(std::max(0.0, number(*turns) - 1));
+
+  const Arc::Bounds bounds = arc->bounds();
+  Position corner = position_;
+  for (const PlanePoint& point : {bounds.min, bounds.max}) {
+    corner[first] = position_[first] + point.first;
+    corner[second] = position_[second] + point.second;
+    if (const auto axis = axis_beyond_travel(corner)) {
+      return tl::unexpected{error_at(NcFault::beyond_axis_limit, block, block.find(axis_letters[*axis]))};
     }
-    sweep = std::atan2(along_second - c2, along_first - c1) - std::atan2(-c2, -c1);
-    if (motion_ == 20) sweep = -sweep;
-    // An end at the start is a full circle, not none.
-    if (chord == 0) sweep = full;
-    while (sweep <= 0) sweep += full;
-    while (sweep > full) sweep -= full;
   }
-  if (const Word* const turns = block.find('P')) sweep += full * std::max(0.0, number(*turns) - 1);
-  return std::hypot(radius * sweep, target[third] - position_[third]);
+  return feed_to(block, target, std::hypot(arc->length_mm(), target[third] - position_[third]));
+}
+
+std::optional<std::size_t> MotionPlanner::axis_beyond_travel(const Position& position) const {
+  for (std::size_t axis = 0; axis < axis_count; ++axis) {
+    const auto& travel = options_.travel[axis];
+    if (travel &&
+        (position[axis] < travel->min - travel_tolerance || position[axis] > travel->max + travel_tolerance))
+      return axis;
+  }
+  return std::nullopt;
 }
 
 MotionPlanner::Planned MotionPlanner::arrive(const Block& block, const Position& target, MotionKind kind,
                                              double minutes) {
-  for (std::size_t axis = 0; axis < axis_count; ++axis) {
-    const auto& travel = options_.travel[axis];
-    if (travel && (target[axis] < travel->min || target[axis] > travel->max)) {
-      return tl::unexpected{error_at(NcFault::beyond_axis_limit, block, block.find(axis_letters[axis]))};
-    }
+  if (const auto axis = axis_beyond_travel(target)) {
+    return tl::unexpected{error_at(NcFault::beyond_axis_limit, block, block.find(axis_letters[*axis]))};
   }
   const double nanoseconds = minutes * 60e9;
   if (!(nanoseconds <= static_cast<double>(std::chrono::nanoseconds{motion_duration_max}.count()))) {
@@ -209,6 +201,14 @@ MotionPlanner::Planned MotionPlanner::arrive(const Block& block, const Position&
   const std::chrono::nanoseconds duration{std::llround(nanoseconds) / 100 * options_.time_percent +
                                           std::llround(nanoseconds) % 100 * options_.time_percent / 100};
   return Motion{kind, duration, position_[z_axis]};
+}
+
+tl::expected<void, NcError> check_motion(const Program& program, const AxisOptions& axes) {
+  MotionPlanner planner{axes};
+  for (const Block& block : program.blocks) {
+    if (const auto planned = planner.plan(block); !planned) return tl::unexpected{planned.error()};
+  }
+  return {};
 }
 
 }  // namespace kernel_mocks

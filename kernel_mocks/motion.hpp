@@ -40,6 +40,7 @@ struct AxisOptions {
 };
 
 enum class MotionKind : std::uint8_t { rapid, feed, dwell };
+inline constexpr std::size_t motion_kind_count = 3;
 
 struct Motion {
   MotionKind kind = MotionKind::rapid;
@@ -69,7 +70,8 @@ class MotionPlanner {
   Planned set_offset(const Block& block, GTenths code);
   Planned to_reference(const Block& block);
   Planned feed_to(const Block& block, const Position& target, double length_mm);
-  [[nodiscard]] tl::expected<double, NcFault> arc_length(const Block& block, const Position& target) const;
+  Planned along_arc(const Block& block, const Position& target);
+  [[nodiscard]] std::optional<std::size_t> axis_beyond_travel(const Position& position) const;
   Planned arrive(const Block& block, const Position& target, MotionKind kind, double minutes);
   [[nodiscard]] double rapid_minutes(const Position& from, const Position& to) const;
   [[nodiscard]] double scaled(std::size_t axis, const Word& word) const;
@@ -88,5 +90,8 @@ class MotionPlanner {
   double feed_ = 0;
   double speed_ = 0;
 };
+
+/// Plans every block: a motion that this machine cannot carry out is refused before anything moves.
+[[nodiscard]] tl::expected<void, NcError> check_motion(const Program& program, const AxisOptions& axes);
 
 }  // namespace kernel_mocks

@@ -5,10 +5,9 @@
 // is not waited for is finished before the next one is given, or at the end of the program.
 //
 // Invariants
-//   - DEN (M103) is off while a motion is under way, and on before a function of the block's end is given.
-//   - A motion at feed after a spindle start begins only with "spindle at speed" (M123); rapids do not wait.
-//   - While the feed hold is active no block begins and no axis moves; a handshake under way goes on.
-//   - While M125 is off no axis moves.
+//   - DEN (M103) is on before a function of the block's end is given.
+//   - While the feed hold is active no block begins; a handshake under way goes on.
+//   - No strobe rises after the run was ended by the operator, by SIGINT or by a fault of the PLC.
 //
 // A run that fails, or ends at a stop, resets the PLC: nobody is there who would press cycle start.
 #pragma once
@@ -16,17 +15,19 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include <tl/expected.hpp>
 
+#include "kernel_mocks/axis_control.hpp"
 #include "kernel_mocks/block_plan.hpp"
 #include "kernel_mocks/function_worker.hpp"
 #include "kernel_mocks/geometry_task.hpp"
 #include "kernel_mocks/logic_task.hpp"
 #include "kernel_mocks/motion.hpp"
 #include "kernel_mocks/nc_program.hpp"
-#include "kernel_mocks/operator_panel.hpp"
+#include "kernel_mocks/run_result.hpp"
+#include "kernel_mocks/run_watch.hpp"
+#include "kernel_mocks/runner_options.hpp"
 
 namespace kernel_mocks {
 
@@ -36,13 +37,18 @@ class PartProgramObserver {
 
   using TimePoint = std::chrono::steady_clock::time_point;
 
+  /// The PLC is ready, "program running" is on.
+  virtual void program_begun(TimePoint /*at*/) noexcept {}
   /// The strobes of the request are up.
   virtual void given(const Block& /*block*/, const FunctionRequest& /*request*/, TimePoint /*at*/) noexcept {}
   /// No FIN for a request whose strobes were up.
   virtual void not_acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
                                 const LogicFailure& /*failure*/) noexcept {}
-  /// The block moves an axis or dwells; it has done so.
-  virtual void motion_noted(const Block& /*block*/) noexcept {}
+  /// The block moved an axis or dwelled.
+  /// @param duration  holds included; 0 when motion takes no time
+  /// @param reached   false: the run ended before the motion did
+  virtual void moved(const Block& /*block*/, MotionKind /*kind*/, std::chrono::nanoseconds /*duration*/,
+                     bool /*reached*/) noexcept {}
   /// The PLC has done all functions of this request.
   virtual void acknowledged(const Block& /*block*/, const FunctionRequest& /*request*/,
                             std::chrono::nanoseconds /*duration*/) noexcept {}
@@ -55,37 +61,6 @@ class PartProgramObserver {
   PartProgramObserver& operator=(const PartProgramObserver&) = default;
 };
 
-struct RunnerOptions {
-  /// M0 (and M1, when its switch is on) goes on at once, as if cycle start had been pressed.
-  bool continue_at_stop = false;
-  /// The operator's switch for M1: off, M1 does nothing and the PLC does not see it.
-  bool optional_stop = false;
-  /// Must outlive the runner.
-  const MachineTable* machine_table = &MachineTable::standard();
-  AxisOptions axes{};
-  /// Longest wait for "spindle at speed" before a motion at feed.
-  std::chrono::nanoseconds spindle_timeout = std::chrono::seconds{10};
-  /// May be nullptr: nobody is there. With a panel a stop waits for cycle start.
-  OperatorPanel* panel = nullptr;
-  /// May be nullptr; presses the panel, which must be there.
-  Operator* operator_ = nullptr;
-};
-
-enum class RunOutcome : std::uint8_t {
-  ended,    ///< M2, M30, M99 or the last block before the closing %
-  stopped,  ///< at M0 or M1
-  refused,  ///< a word that this machine cannot carry out; nothing of the program was done
-  failed,   ///< the logic task could not go on
-};
-
-struct RunResult {
-  RunOutcome outcome = RunOutcome::ended;
-  /// Where and why the run ended, for people; empty when it ended.
-  std::string message;
-  /// For failed.
-  std::optional<LogicFailure> failure;
-};
-
 class PartProgramRunner {
  public:
   /// @param observer  may be nullptr
@@ -95,37 +70,34 @@ class PartProgramRunner {
   [[nodiscard]] RunResult run(const Program& program);
 
  private:
-  using Step = tl::expected<void, RunResult>;
   struct Pending {
     const Block* block;
     FunctionRequest request;
+    /// The observer knows of it.
+    bool told = false;
   };
-  /// The threads of one run.
+  /// What lives as long as one run: its threads, and who waits for them.
   struct Tasks {
-    explicit Tasks(LogicTask& logic_task) : geometry{notifier}, functions{logic_task, notifier} {}
+    Tasks(LogicTask& logic_task, const RunnerOptions& options)
+        : geometry{notifier},
+          functions{logic_task, notifier},
+          watch{logic_task, geometry, notifier, options},
+          axes{logic_task, geometry, watch, options} {}
     Notifier notifier;
     GeometryTask geometry;
     FunctionWorker functions;
+    RunWatch watch;
+    AxisControl axes;
   };
 
   RunResult run_blocks(const Program& program);
   tl::expected<ProgramFlow, RunResult> run_block(const Block& block);
-  Step give(const Block& block, const FunctionRequest& request);
-  Step finish_pending();
-  Step finish_pending_if(Acknowledgement acknowledgement);
-  Step move(const Block& block, const Motion& motion);
-  Step wait_for_spindle(const Block& block);
-  Step wait_at_stop(const Block& block);
-  Step wait_while_held(const Block& block);
-  Step set_held(const std::string& where, bool held);
-  Step set_at_tool_change_position(const std::string& where, bool there);
-  /// Waits until `ready()`, and looks at the operator's panel meanwhile.
-  template <typename Ready>
-  Step wait_until(const std::string& where, Ready ready);
-  Step look_at_panel(const std::string& where);
-  Step obey(const std::string& where, OperatorEvent event);
-  [[nodiscard]] bool is_attended() const;
-  [[nodiscard]] Step check(const std::string& where, const tl::expected<void, LogicFailure>& done) const;
+  void tell_given();
+  RunStep give(const Block& block, const FunctionRequest& request);
+  RunStep finish_pending();
+  RunStep finish_pending_if(Acknowledgement acknowledgement);
+  void abandon_pending(const RunResult& why);
+  RunStep move(const Block& block, const Motion& motion);
 
   LogicTask& logic_task_;
   RunnerOptions options_;
@@ -133,12 +105,6 @@ class PartProgramRunner {
   std::optional<Tasks> tasks_;
   std::optional<Pending> pending_;
   std::optional<MotionPlanner> planner_;
-  std::chrono::steady_clock::time_point begun_;
-  std::optional<bool> at_tool_change_position_;
-  bool optional_stop_ = false;
-  bool held_ = false;
-  bool stopped_ = false;
-  bool spindle_has_started_ = false;
 };
 
 }  // namespace kernel_mocks

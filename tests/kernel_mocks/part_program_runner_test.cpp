@@ -17,7 +17,9 @@ using Log = std::vector<std::string>;
 
 class Recorder final : public PartProgramObserver {
  public:
-  void motion_noted(const Block& block) noexcept override { events.push_back(name_of(block) + " motion"); }
+  void moved(const Block& block, MotionKind, std::chrono::nanoseconds, bool reached) noexcept override {
+    events.push_back(name_of(block) + (reached ? " motion" : " motion cut short"));
+  }
   void acknowledged(const Block& block, const FunctionRequest& request,
                     std::chrono::nanoseconds) noexcept override {
     events.push_back(name_of(block) + " " + to_string(request));

@@ -1,6 +1,7 @@
 #include "tests/kernel_mocks/scripted_plc.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -61,6 +62,11 @@ tl::expected<std::size_t, protocol::PortError> ScriptedPlc::write(std::span<cons
   return bytes.size();
 }
 
+void ScriptedPlc::note(std::string change) {
+  log.push_back(std::move(change));
+  times.push_back(std::chrono::steady_clock::now());
+}
+
 void ScriptedPlc::execute(const protocol::fx::Request& request) {
   using protocol::fx::Command;
   answer_.assign(1, protocol::fx::ack);
@@ -75,13 +81,12 @@ void ScriptedPlc::execute(const protocol::fx::Request& request) {
     case Command::write:
       std::copy(request.data.begin(), request.data.end(), place);
       if (request.address == d_base + 200) {
-        log.push_back(request.data.size() == 2
-                          ? fmt::format("D100 = {}", word(100))
-                          : fmt::format("D100 = {} {} {}", word(100), word(101), word(102)));
+        note(request.data.size() == 2 ? fmt::format("D100 = {}", word(100))
+                                      : fmt::format("D100 = {} {} {}", word(100), word(101), word(102)));
       } else if (request.address == strobe_address) {
-        log.push_back(fmt::format("M96 byte {:02X}", std::to_integer<unsigned>(request.data.front())));
+        note(fmt::format("M96 byte {:02X}", std::to_integer<unsigned>(request.data.front())));
       } else {
-        log.push_back("unknown write");
+        note("unknown write");
       }
       break;
     case Command::force_on:
@@ -89,7 +94,7 @@ void ScriptedPlc::execute(const protocol::fx::Request& request) {
       const auto m = static_cast<std::uint16_t>(request.address - m_force_base);
       const bool on = request.command == Command::force_on;
       set_bit(m, on);
-      log.push_back(fmt::format("M{} {}", m, on ? "on" : "off"));
+      note(fmt::format("M{} {}", m, on ? "on" : "off"));
       break;
     }
     default:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -29,6 +30,8 @@ class ScriptedPlc final : public protocol::SerialPort {
 
   /// Requests that changed something, in their order: "D100 = 3 500 0", "M96 byte B0", "M104 on".
   std::vector<std::string> log;
+  /// When each of them came.
+  std::vector<std::chrono::steady_clock::time_point> times;
   /// Status bytes that were read so far.
   unsigned polls = 0;
   /// From this request on there is no answer; 0 = never.
@@ -52,6 +55,7 @@ class ScriptedPlc final : public protocol::SerialPort {
 
  private:
   void execute(const protocol::fx::Request& request);
+  void note(std::string change);
 
   std::array<std::byte, 0x2000> memory_{};
   std::vector<std::byte> answer_;
