@@ -27,6 +27,7 @@
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
 #include "emulator_models/soft_plc/il_program.hpp"
+#include "emulator_models/soft_plc/plc_observer.hpp"
 #include "emulator_models/soft_plc/variable_exchange.hpp"
 
 namespace emulator_models::soft_plc {
@@ -89,7 +90,8 @@ class Gateway {
   [[nodiscard]] Result take(const std::shared_ptr<Ticket>& ticket, bool keep_waiting = false);
 
   /// Phase 1 of a scan of that cycle, on its thread.
-  void serve(std::size_t cycle, const CycleImage& image) noexcept;
+  /// @param observer  told of each write; may be null
+  void serve(std::size_t cycle, const CycleImage& image, PlcObserver* observer = nullptr) noexcept;
 
   /// All requests that wait end as closed, later ones are refused.
   void close() noexcept;

@@ -71,7 +71,7 @@ TEST_F(ArchiveDrainTest, whichever_write_fails_no_batch_is_stored_in_part_or_twi
   FailingDisk disk;
   config.wal_bytes_max = ArchiveConfig::wal_bytes_min;
   for (const bool for_good : {false, true}) {
-    for (int nth = 0, stored_at_once = 0; stored_at_once < 20; ++nth) {
+    for (int nth = 0, stored_at_once = 0; stored_at_once < 3; ++nth) {
       config.file = folder.path() / (std::to_string(nth) + (for_good ? "good" : "once"));
       disk.fail_from(-1, 0);
       auto archive = ArchiveDatabase::open(config).value();
