@@ -1,6 +1,7 @@
 // From the scans of an FxPlc to rows that an engineer reads, on the archive's thread and without any.
 #include "emulator_models/archive/plc_archive.hpp"
 
+#include "emulator_models/archive/fx_archive.hpp"
 #include "emulator_models/fx_address_map.hpp"
 #include "emulator_models/fx_plc.hpp"
 #include "emulator_models/fx_recorder.hpp"
@@ -76,6 +77,29 @@ TEST_F(PlcArchiveTest, what_is_lost_in_ring_and_file_is_one_sum) {
   (*archive)->stop();
   scan_until(now + 100ms);
   EXPECT_EQ((*archive)->lost_count(), 1U + 9U);
+}
+
+TEST_F(PlcArchiveTest, the_archive_that_options_ask_for_names_its_signals_and_its_wall_clock) {
+  const auto archive = FxArchive::open({.path = config.file, .signals = {"y0", "M8000"}}, Model::fx3u, now,
+                                       WallTime{24h * 365}, {});
+  ASSERT_TRUE(archive) << archive.error();
+  plc.observe_with(&(*archive)->recorder());
+  scan_until(now + 1s);
+  EXPECT_EQ((*archive)->stop(now), "archive: 101 rows stored, 0 records lost");
+  EXPECT_EQ(query("SELECT DISTINCT signal, wall_clock < '1971-01-01 00:00:01' FROM signal_changes"), "Y0 1 ");
+  EXPECT_EQ(query("SELECT min(wall_clock) FROM signal_changes"), "1971-01-01 00:00:00.010 ");
+}
+
+TEST_F(PlcArchiveTest, signals_that_are_none_are_refused_with_their_name) {
+  const std::vector<std::string> names[] = {
+      {"Y0", "X9"}, {"D100"}, {"nonsense"}, std::vector<std::string>(257, "M0")};
+  for (const auto& signals : names) {
+    const auto archive = FxArchive::open({.path = config.file, .signals = signals}, Model::fx3u, now, {}, {});
+    ASSERT_FALSE(archive);
+    EXPECT_NE(archive.error().find(signals.size() > 256 ? "257" : signals.back()), std::string::npos)
+        << archive.error();
+  }
+  EXPECT_FALSE(std::filesystem::exists(config.file));
 }
 
 }  // namespace
