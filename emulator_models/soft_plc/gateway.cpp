@@ -37,12 +37,6 @@ GatewayAnswer carry_out(const GatewayRequest& request, const CycleImage& image, 
   return answer;
 }
 
-void tell_of_writes(const GatewayRequest& request, PlcObserver& observer) noexcept {
-  for (const GatewayItem& item : request.items) {
-    if (!item.written.empty()) observer.gateway_wrote(request.cycle, item);
-  }
-}
-
 }  // namespace
 
 std::string_view to_string(GatewayError error) noexcept {
@@ -134,14 +128,23 @@ Gateway::Result Gateway::exchange(GatewayRequest request, std::chrono::nanosecon
   return take(*ticket);
 }
 
+void Gateway::tell_of_writes(std::size_t cycle, PlcObserver& observer) const noexcept {
+  const auto& queue = cycles_[cycle].queue;
+  for (std::size_t i = 0; i < std::min(limits_.requests_per_scan_max, queue.size()); ++i) {
+    for (const GatewayItem& item : queue[i]->request.items) {
+      if (!item.written.empty()) observer.gateway_writes(cycle, item);
+    }
+  }
+}
+
 void Gateway::serve(std::size_t cycle, const CycleImage& image, PlcObserver* observer) noexcept {
   const std::lock_guard lock{mutex_};
+  if (observer != nullptr) tell_of_writes(cycle, *observer);
   Cycle& served = cycles_[cycle];
   ++served.scan_number;
   for (std::size_t i = 0; i < limits_.requests_per_scan_max && !served.queue.empty(); ++i) {
     Ticket& ticket = *served.queue.front();
     ticket.result = carry_out(ticket.request, image, served.scan_number);
-    if (observer != nullptr) tell_of_writes(ticket.request, *observer);
     served.queue.pop_front();
     answered_.notify_all();
   }

@@ -107,6 +107,8 @@ class Gateway {
   [[nodiscard]] tl::expected<void, GatewayError> check(const GatewayRequest& request) const noexcept;
   [[nodiscard]] tl::expected<void, GatewayError> check_item(const GatewayItem& item,
                                                             std::size_t cycle) const noexcept;
+  /// Of the requests that the scan is about to carry out.
+  void tell_of_writes(std::size_t cycle, PlcObserver& observer) const noexcept;
 
   const VariableExchange& exchange_;
   mutable std::mutex mutex_;

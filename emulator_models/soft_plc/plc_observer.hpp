@@ -21,8 +21,8 @@ class PlcObserver {
   /// @param image  whole between two scans
   virtual void step_ordered(std::size_t cycle, const ScanTask& task, const CycleImage& image,
                             std::chrono::nanoseconds now) noexcept = 0;
-  /// In phase 1 of a scan of the cycle: what a field device has written.
-  virtual void gateway_wrote(std::size_t cycle, const GatewayItem& item) noexcept = 0;
+  /// In phase 1 of a scan of the cycle: what a field device writes.
+  virtual void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept = 0;
 
  protected:
   PlcObserver() = default;

@@ -66,7 +66,7 @@ void PlcRecorder::end_scan(Cycle& cycle, const CycleImage& image) noexcept {
   cycle.values.publish(cycle.scan, cycle.published);
 }
 
-void PlcRecorder::gateway_wrote(std::size_t index, const GatewayItem& item) noexcept {
+void PlcRecorder::gateway_writes(std::size_t index, const GatewayItem& item) noexcept {
   Cycle& cycle = *cycles_[index];
   std::uint64_t first_bytes = 0;
   std::memcpy(&first_bytes, item.written.data(), std::min(item.written.size(), sizeof first_bytes));

@@ -34,7 +34,7 @@ class PlcRecorder final : public PlcObserver {
 
   void step_ordered(std::size_t cycle, const ScanTask& task, const CycleImage& image,
                     std::chrono::nanoseconds now) noexcept override;
-  void gateway_wrote(std::size_t cycle, const GatewayItem& item) noexcept override;
+  void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept override;
   /// When no cycle runs any more: pushes what is summed up.
   void finish(std::chrono::nanoseconds now) noexcept;
 
