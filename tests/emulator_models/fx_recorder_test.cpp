@@ -64,7 +64,11 @@ class FxRecorderTest : public testing::Test {
           FxAddressMap{Model::fx3u})
           .value();
   ScanBoundaryPort port{emulator, 10s};
-  FxPlc plc{emulator, program, {}, &port, {}, now};
+  /// In the middle of a scan.
+  soft_plc::ScanStamp seen_by_plant;
+  FxPlc plc{
+      emulator, program, [this](Terminals&, SteadyTime) { (void)recorder.values().read({}, seen_by_plant); },
+      &port,    {},      now};
   FxRecorder recorder{
       {.signals = {device("M0"), device("Y17")}, .values = {device("D0"), device("Y17")}}, Model::fx3u, now};
 };
@@ -116,6 +120,7 @@ TEST_F(FxRecorderTest, the_values_of_the_latest_scan_can_be_read) {
     ASSERT_EQ(recorder.values().read(read, stamp), soft_plc::ReadOutcome::read);
     EXPECT_EQ(read, (std::array<std::uint64_t, 2>{i, 1}));
     EXPECT_EQ(stamp.scan_number, i);
+    EXPECT_EQ(seen_by_plant.scan_number, i - 1);
   }
 }
 

@@ -147,6 +147,19 @@ TEST_F(CycleRecorderTest, what_led_to_a_fault_stands_before_it_and_the_change_to
   EXPECT_EQ(records[4].kind, EventKind::overrun);
 }
 
+TEST_F(CycleRecorderTest, a_fault_in_STOP_ends_the_span_too) {
+  make();
+  rig.duration_of(ScanAction::read_inputs) = 15ms;
+  scan();
+  task->halt(FaultCode::other_cycle);
+  scan();
+  const auto records = taken();
+  ASSERT_GE(records.size(), 3U);
+  EXPECT_EQ(records[0].kind, EventKind::overrun);
+  EXPECT_EQ(records[1].kind, EventKind::scans);
+  EXPECT_EQ(records[2].kind, EventKind::fault);
+}
+
 TEST_F(CycleRecorderTest, the_place_in_the_program_belongs_to_the_fault_of_the_program_only) {
   make({.period = 10ms, .watchdog_limit = 100ms});
   run();

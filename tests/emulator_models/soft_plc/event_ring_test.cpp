@@ -58,10 +58,12 @@ TEST(EventRing, of_a_closed_ring_all_that_was_not_taken_is_lost) {  // I2
   for (std::uint64_t i = 0; i < 6; ++i) (void)ring.push(numbered(i));  // 2 lost
   (void)all_of(ring);
   (void)ring.push(numbered(6));  // with the gap's record
+  (void)all_of(ring);
+  (void)ring.push(numbered(7));
   EXPECT_EQ(ring.lost_count(), 2u);
   ring.close();
   EXPECT_EQ(ring.lost_count(), 3u);
-  for (std::uint64_t i = 7; i < 20; ++i) (void)ring.push(numbered(i));
+  for (std::uint64_t i = 8; i < 21; ++i) (void)ring.push(numbered(i));
   EXPECT_EQ(ring.lost_count(), 16u);
 }
 

@@ -93,6 +93,24 @@ TEST_F(PlcRecorderTest, values_and_signals_are_those_of_whole_scans) {
   EXPECT_EQ(scan, plc->status(0).scan_times.scans_count);
 }
 
+TEST_F(PlcRecorderTest, a_cycle_without_pauses_has_its_whole_scans_recorded) {
+  SoftPlcSetup setup;
+  setup.slice_intervals = {0ns};
+  setup.cycles.push_back(cycle("restless", 0ns, {}, 0, [](const CycleImage& image, const ScanStep&) {
+    set_word(image.outputs, word(image.outputs) + 1);
+    return Progress::finished;
+  }));
+  setup.observer = &recorder;
+  plc = SoftPlc::make(std::move(setup), 0ns).value();
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  for (int i = 0; i < 1000; ++i) (void)plc->advance(now += 1us);
+  std::array<std::uint64_t, 2> values{};
+  ScanStamp stamp;
+  ASSERT_EQ(recorder.values(0).read(values, stamp), ReadOutcome::read);
+  EXPECT_EQ(values[0], stamp.scan_number);
+  EXPECT_GT(stamp.scan_number, 100U);
+}
+
 TEST_F(PlcRecorderTest, writes_of_the_gateway_are_recorded_with_their_cycle_address_and_bytes) {
   run_until(*plc, now, 5ms);
   const auto ticket = plc->gateway().submit(
