@@ -55,12 +55,18 @@ FxPlc::FxPlc(FxPlcEmulator& emulator, const soft_plc::IlProgram& program, Plant 
     emulator_.lock()->set(watchdog_time, static_cast<std::uint32_t>(config.watchdog_limit->count()));
 }
 
+void FxPlc::observe_with(FxPlcObserver* observer) noexcept {
+  observer_ = observer;
+  if (port_ != nullptr) port_->observe_with(observer);
+}
+
 soft_plc::ScanStep FxPlc::advance(SteadyTime now, WallTime wall) noexcept {
   now_ = now;
   wall_ = wall;
   if (is_overdue()) task_.halt(FaultCode::watchdog);
   const soft_plc::ScanStep step = task_.next(now.time_since_epoch(), last_progress_);
   last_progress_ = Progress::finished;
+  if (observer_ != nullptr) observer_->step_ordered(*this, locked_ ? &memory() : nullptr, now);
   if (step.action == ScanAction::wait) {
     locked_.reset();
     return step;

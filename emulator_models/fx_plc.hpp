@@ -48,6 +48,9 @@ class FxPlc final : private soft_plc::ScanProgram {
   FxPlc(FxPlcEmulator& emulator, const soft_plc::IlProgram& program, Plant plant, ScanBoundaryPort* port,
         const FxPlcConfig& config, SteadyTime now);
 
+  /// @param observer  outlives this; null: nobody watches. Called on the thread that advances
+  void observe_with(FxPlcObserver* observer) noexcept;
+
   /// Does the next step.
   /// @return it; `wait`: nothing is to be done before `until`, since the epoch of the steady clock
   soft_plc::ScanStep advance(SteadyTime now, WallTime wall) noexcept;
@@ -91,6 +94,7 @@ class FxPlc final : private soft_plc::ScanProgram {
   soft_plc::IlMachine machine_;
   Plant plant_;
   ScanBoundaryPort* port_;
+  FxPlcObserver* observer_ = nullptr;
   FxPlcConfig config_;
   soft_plc::ScanTask task_;
   Terminals terminals_;

@@ -35,9 +35,15 @@ void ScanBoundaryPort::execute_all(const FxPlcEmulator::LockedMemory& memory) no
   for (std::size_t i = 0; i < queue_length_; ++i) {
     queue_[i]->answer = plc_.process(queue_[i]->request, memory);
     queue_[i]->done = true;
+    if (observer_ != nullptr) observer_->request_served(queue_[i]->request, queue_[i]->answer);
   }
   queue_length_ = 0;
   answered_.notify_all();
+}
+
+void ScanBoundaryPort::observe_with(FxPlcObserver* observer) noexcept {
+  const std::lock_guard lock{mutex_};
+  observer_ = observer;
 }
 
 void ScanBoundaryPort::withdraw(const Waiting& waiting) noexcept {

@@ -16,6 +16,7 @@
 #include <mutex>
 
 #include "emulator_models/fx_plc_emulator.hpp"
+#include "emulator_models/fx_plc_observer.hpp"
 
 namespace emulator_models {
 
@@ -32,6 +33,8 @@ class ScanBoundaryPort final : public IPlcEmulator {
                             std::chrono::nanoseconds patience = default_patience) noexcept;
 
   [[nodiscard]] protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override;
+  /// @param observer  of the requests that are executed, on the thread that serves; null: nobody
+  void observe_with(FxPlcObserver* observer) noexcept;
 
   /// Executes all requests that wait. Called by the scan, which holds the memory.
   void serve(const FxPlcEmulator::LockedMemory& memory) noexcept;
@@ -56,6 +59,7 @@ class ScanBoundaryPort final : public IPlcEmulator {
   std::condition_variable answered_;
   std::array<Waiting*, waiting_max> queue_{};
   std::size_t queue_length_ = 0;
+  FxPlcObserver* observer_ = nullptr;
 };
 
 }  // namespace emulator_models

@@ -14,10 +14,6 @@ namespace emulator_models::archive {
 
 namespace {
 
-constexpr std::int64_t page_bytes = 4096;
-/// A row takes at most this, with its share of the tree: 12 numbers of up to 9 bytes.
-constexpr std::int64_t row_bytes_max = 160;
-
 ArchiveErrorCode code_of(int result) noexcept {
   switch (result & 0xFF) {
     case SQLITE_BUSY:
@@ -206,29 +202,38 @@ bool ArchiveDatabase::make_room(std::size_t batch_rows) noexcept {
 }
 
 /// Moves the WAL into the file when it has grown to half of its bound, so that it starts again from its front.
-bool ArchiveDatabase::wal_has_room() noexcept {
-  std::error_code none;
+tl::expected<void, ArchiveError> ArchiveDatabase::make_room_in_wal() {
+  std::error_code failure;
   const auto bytes = [&] {
-    const auto size = std::filesystem::file_size(config_.file.string() + "-wal", none);
-    return none ? std::int64_t{0} : static_cast<std::int64_t>(size);
+    return static_cast<std::int64_t>(std::filesystem::file_size(config_.file.string() + "-wal", failure));
   };
-  if (bytes() < config_.wal_bytes_max / 2) return true;
+  // While it is open here the WAL is there, and nobody else removes it together with the file but by hand.
+  const std::int64_t before = bytes();
+  if (failure || !std::filesystem::exists(config_.file, failure))
+    return tl::unexpected{
+        error(ArchiveErrorCode::cannot_open,
+              "it, or its -wal, was moved away or deleted while in use; put both back or start "
+              "the PLC again")};
+  if (before < config_.wal_bytes_max / 2) return {};
   // TRUNCATE: the size of the file tells how full it is. With a reader in an old state it fails, and that is told
   // only when the bound is reached.
   sqlite3_wal_checkpoint_v2(database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
-  return bytes() < config_.wal_bytes_max;
+  if (bytes() < config_.wal_bytes_max) return {};
+  return tl::unexpected{
+      error(ArchiveErrorCode::busy, "the WAL is full and a reader keeps it from starting again")};
 }
 
-tl::expected<void, ArchiveError> ArchiveDatabase::append(
+std::size_t ArchiveDatabase::batch_rows_max() const noexcept {
+  return static_cast<std::size_t>(std::min(config_.rows_max, config_.bytes_max / 4 * 3 / row_bytes_max));
+}
+
+tl::expected<std::size_t, ArchiveError> ArchiveDatabase::append(
     std::span<const soft_plc::EventRecord> batch) noexcept try {
-  if (batch.size() > static_cast<std::size_t>(config_.rows_max))
-    batch = batch.last(static_cast<std::size_t>(config_.rows_max));
-  if (!wal_has_room())
-    return tl::unexpected{
-        error(ArchiveErrorCode::busy, "the WAL is full and a reader keeps it from starting again")};
+  batch = batch.last(std::min(batch.size(), batch_rows_max()));
+  if (auto room = make_room_in_wal(); !room) return tl::unexpected{std::move(room.error())};
   bool stored = execute("BEGIN IMMEDIATE") && make_room(batch.size());
   for (std::size_t i = 0; stored && i < batch.size(); ++i) stored = insert(batch[i]);
-  if (stored && execute("COMMIT")) return {};
+  if (stored && execute("COMMIT")) return batch.size();
   ArchiveError why = error();
   (void)execute("ROLLBACK");  // without effect when SQLite has already done it, or nothing was begun
   return tl::unexpected{std::move(why)};

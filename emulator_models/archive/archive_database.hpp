@@ -4,11 +4,13 @@
 // can take the batches since the last checkpoint, never the file's integrity.
 //
 // Invariants
-//   I1  append() stores all records of a batch or none.
+//   I1  append() stores all records of a batch or none; of a batch that is longer than the archive the newest.
 //   I2  after an append() the file holds at most rows_max events, the newest; older ones make room.
-//   I3  the file and its WAL grow to at most bytes_max + wal_bytes_max + one batch. When a reader holds on to an old
-//       state so that the WAL cannot start again, append() refuses.
-//   I4  a file that is no archive, is damaged or of another version is refused and left as it is.
+//   I3  the file and its WAL together take at most bytes_max + wal_bytes_max + batch_bytes() of the latest batch; the
+//       index of the WAL, -shm, 1/128 of its length in addition. When a reader holds on to an old state so that the
+//       WAL cannot start again, append() refuses.
+//   I4  a file that is no archive, is damaged or of another version is refused and left as it is; one that is moved
+//       away or deleted while in use is not written any more.
 // One thread at a time.
 #pragma once
 
@@ -44,7 +46,7 @@ struct ArchiveConfig {
 
 enum class ArchiveErrorCode : std::uint8_t {
   limit_out_of_range,  ///< a bound of the configuration
-  cannot_open,         ///< missing folder, no right to write
+  cannot_open,         ///< missing folder, no right to write, moved away while in use
   foreign_file,        ///< a file of something else, or of another version of the archive
   damaged_file,
   busy,  ///< another process holds it, or a reader holds on to an old state: later
@@ -69,11 +71,21 @@ class ArchiveDatabase {
   ArchiveDatabase& operator=(ArchiveDatabase&&) = delete;
   ~ArchiveDatabase();
 
+  /// What a batch adds to the WAL at most, in bytes: its rows, and the pages touched by it and by what makes room.
+  [[nodiscard]] static constexpr std::int64_t batch_bytes(std::size_t rows) noexcept {
+    return static_cast<std::int64_t>(rows) * row_bytes_max + 64 * page_bytes;
+  }
+
   /// One transaction. After an error nothing of the batch is stored, and it can be tried again.
-  [[nodiscard]] tl::expected<void, ArchiveError> append(
+  /// @return rows stored, the last of the batch: all, unless it is longer than rows_max or than 3/4 of bytes_max
+  [[nodiscard]] tl::expected<std::size_t, ArchiveError> append(
       std::span<const soft_plc::EventRecord> batch) noexcept;
 
  private:
+  static constexpr std::int64_t page_bytes = 4096;
+  /// A row takes at most this, with its share of the tree: 12 numbers of up to 9 bytes.
+  static constexpr std::int64_t row_bytes_max = 160;
+
   explicit ArchiveDatabase(const ArchiveConfig& config) : config_{config} {}
 
   [[nodiscard]] bool execute(const char* sql) noexcept;
@@ -85,7 +97,8 @@ class ArchiveDatabase {
   [[nodiscard]] bool begin_power_up() noexcept;
   [[nodiscard]] bool insert(const soft_plc::EventRecord& record) noexcept;
   [[nodiscard]] bool make_room(std::size_t batch_rows) noexcept;
-  [[nodiscard]] bool wal_has_room() noexcept;
+  [[nodiscard]] std::size_t batch_rows_max() const noexcept;
+  [[nodiscard]] tl::expected<void, ArchiveError> make_room_in_wal();
 
   ArchiveConfig config_;
   sqlite3* database_ = nullptr;

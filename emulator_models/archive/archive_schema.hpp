@@ -32,7 +32,7 @@ CREATE VIEW overruns AS
   FROM timed_event WHERE kind = 2;
 CREATE VIEW faults AS
   SELECT id, power_up, seconds, wall_clock, cycle, scan_number,
-         CASE code WHEN 1 THEN 'watchdog' WHEN 2 THEN 'overrun' WHEN 3 THEN 'program failed' WHEN 4 THEN 'other cycle'
+         CASE code WHEN 1 THEN 'watchdog' WHEN 2 THEN 'overrun' WHEN 3 THEN 'program failed' WHEN 4 THEN 'other cycle' WHEN 5 THEN 'inputs stale'
                    ELSE 'code ' || code END AS fault,
          CASE v0 WHEN 0 THEN 'system analysis' WHEN 1 THEN 'clear fault' WHEN 2 THEN 'initialise'
                  WHEN 3 THEN 'write safe outputs' WHEN 4 THEN 'read inputs' WHEN 5 THEN 'read from cycles'

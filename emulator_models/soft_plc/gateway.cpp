@@ -128,8 +128,18 @@ Gateway::Result Gateway::exchange(GatewayRequest request, std::chrono::nanosecon
   return take(*ticket);
 }
 
-void Gateway::serve(std::size_t cycle, const CycleImage& image) noexcept {
+void Gateway::tell_of_writes(std::size_t cycle, PlcObserver& observer) const noexcept {
+  const auto& queue = cycles_[cycle].queue;
+  for (std::size_t i = 0; i < std::min(limits_.requests_per_scan_max, queue.size()); ++i) {
+    for (const GatewayItem& item : queue[i]->request.items) {
+      if (!item.written.empty()) observer.gateway_writes(cycle, item);
+    }
+  }
+}
+
+void Gateway::serve(std::size_t cycle, const CycleImage& image, PlcObserver* observer) noexcept {
   const std::lock_guard lock{mutex_};
+  if (observer != nullptr) tell_of_writes(cycle, *observer);
   Cycle& served = cycles_[cycle];
   ++served.scan_number;
   for (std::size_t i = 0; i < limits_.requests_per_scan_max && !served.queue.empty(); ++i) {

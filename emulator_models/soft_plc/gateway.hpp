@@ -27,6 +27,7 @@
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
 #include "emulator_models/soft_plc/il_program.hpp"
+#include "emulator_models/soft_plc/plc_observer.hpp"
 #include "emulator_models/soft_plc/variable_exchange.hpp"
 
 namespace emulator_models::soft_plc {
@@ -89,7 +90,8 @@ class Gateway {
   [[nodiscard]] Result take(const std::shared_ptr<Ticket>& ticket, bool keep_waiting = false);
 
   /// Phase 1 of a scan of that cycle, on its thread.
-  void serve(std::size_t cycle, const CycleImage& image) noexcept;
+  /// @param observer  told of each write; may be null
+  void serve(std::size_t cycle, const CycleImage& image, PlcObserver* observer = nullptr) noexcept;
 
   /// All requests that wait end as closed, later ones are refused.
   void close() noexcept;
@@ -105,6 +107,8 @@ class Gateway {
   [[nodiscard]] tl::expected<void, GatewayError> check(const GatewayRequest& request) const noexcept;
   [[nodiscard]] tl::expected<void, GatewayError> check_item(const GatewayItem& item,
                                                             std::size_t cycle) const noexcept;
+  /// Of the requests that the scan is about to carry out.
+  void tell_of_writes(std::size_t cycle, PlcObserver& observer) const noexcept;
 
   const VariableExchange& exchange_;
   mutable std::mutex mutex_;

@@ -38,6 +38,7 @@ struct PlcParts {
   IoManager io;
   OutputGate gate;
   AlarmLamp lamp;
+  PlcObserver* observer = nullptr;  ///< may be null
 };
 
 class PlcCycle final : public ScanProgram {
@@ -48,7 +49,9 @@ class PlcCycle final : public ScanProgram {
   /// The run that the following scans belong to.
   void begin_run(std::uint64_t run) noexcept { run_ = run; }
 
-  void system_analysis() noexcept override { gateway_.serve(index_, image_); }
+  [[nodiscard]] const CycleImage& image() const noexcept { return image_; }
+
+  void system_analysis() noexcept override { gateway_.serve(index_, image_, parts_.observer); }
   void initialise(StartKind start) noexcept override {
     body_->start(start);
     if (start == StartKind::cold) parts_.exchange.send(index_, image_.memory);

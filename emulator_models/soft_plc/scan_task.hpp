@@ -104,6 +104,8 @@ class ScanTask {
   /// Of whole scans in RUN: from the start of system analysis to the end of write outputs.
   [[nodiscard]] const ScanTimes& scan_times() const noexcept { return scan_times_; }
   [[nodiscard]] const ScanPeriod& period() const noexcept { return period_; }
+  /// Of the scan under way, else of the latest; 0 before the first since power-up.
+  [[nodiscard]] std::uint64_t scan_number() const noexcept { return scan_number_; }
   /// Whether a step of a scan was the latest one.
   [[nodiscard]] bool is_in_scan() const noexcept { return action_ != ScanAction::wait; }
   /// Whether next(now) has something to say but wait: the end of a scan, or a step.

@@ -63,7 +63,8 @@ SoftPlc::SoftPlc(SoftPlcSetup setup, ScanScheduler scheduler, nanoseconds now)
     : parts_{VariableExchange{sections_of(setup)},
              IoManager{std::move(setup.drivers), now},
              OutputGate{setup.safe_outputs},
-             {}},
+             {},
+             setup.observer},
       scheduler_{std::move(scheduler)},
       holds_outputs_{setup.cycles[0].config.scan.outputs_in_stop == OutputsInStop::hold} {
   std::vector<CycleImage> images;
@@ -143,6 +144,10 @@ void SoftPlc::stop_all(nanoseconds now, FaultCode others) noexcept {
   }
 }
 
+void SoftPlc::tell_observer(std::size_t index, nanoseconds now) noexcept {
+  parts_.observer->step_ordered(index, scheduler_.cycle(index), cycles_[index].program->image(), now);
+}
+
 nanoseconds SoftPlc::advance(nanoseconds now) noexcept {
   ScanStep step;
   {
@@ -151,6 +156,7 @@ nanoseconds SoftPlc::advance(nanoseconds now) noexcept {
     const ScanScheduler::Slice slice = scheduler_.next(now, last);
     running_ = slice.cycle;
     step = slice.step;
+    for (std::size_t i = 0; parts_.observer != nullptr && i < cycles_.size(); ++i) tell_observer(i, now);
     if (!running_) return step.until;
     prepare(*running_, step);
   }
@@ -164,6 +170,7 @@ nanoseconds SoftPlc::advance_cycle(std::size_t index, nanoseconds now) noexcept 
   {
     const std::lock_guard lock{mutex_};
     step = scheduler_.cycle(index).next(now, cycle.last);
+    if (parts_.observer != nullptr) tell_observer(index, now);
     prepare(index, step);
     if (step.action == ScanAction::wait) return step.until;
   }

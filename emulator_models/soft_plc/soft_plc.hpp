@@ -47,6 +47,7 @@ struct SoftPlcSetup {
   std::vector<IoManager::Slot> drivers;
   GatewayLimits gateway;
   OutputGate::Outputs safe_outputs{};
+  PlcObserver* observer = nullptr;  ///< outlives the PLC; null: nobody watches
 };
 
 struct CycleStatus {
@@ -113,6 +114,7 @@ class SoftPlc {
   /// Under the lock: what has to be known before the step is carried out.
   void prepare(std::size_t index, const ScanStep& step) noexcept;
   void stop_all(std::chrono::nanoseconds now, FaultCode others) noexcept;
+  void tell_observer(std::size_t index, std::chrono::nanoseconds now) noexcept;
 
   PlcParts parts_;
   std::unique_ptr<Gateway> gateway_;

@@ -2,56 +2,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
+#include <limits>
 #include <thread>
 
-#include <gtest/gtest.h>
-#include <sqlite3.h>
-
-#include "emulator_models/archive/archive_writer.hpp"
-#include "tests/support/shell.hpp"
+#include "tests/emulator_models/archive/archive_rig.hpp"
 
 namespace emulator_models::archive {
 namespace {
-
-using soft_plc::EventKind;
-using soft_plc::EventRecord;
-using soft_plc::EventRing;
-
-EventRecord numbered(std::uint64_t number) {
-  return {.kind = EventKind::overrun,
-          .time_ns = static_cast<std::int64_t>(number) * 1'000'000,
-          .scan_number = number,
-          .values = {static_cast<std::int64_t>(number)}};
-}
-
-std::vector<EventRecord> numbered_from(std::uint64_t first, std::uint64_t count) {
-  std::vector<EventRecord> records;
-  for (std::uint64_t i = 0; i < count; ++i) records.push_back(numbered(first + i));
-  return records;
-}
-
-class ArchiveTest : public testing::Test {
- protected:
-  std::string query(const std::string& sql) {
-    sqlite3* database = nullptr;
-    sqlite3_open(config.file.c_str(), &database);
-    std::string text;
-    const auto add = [](void* into, int columns, char** values, char**) {
-      for (int i = 0; i < columns; ++i)
-        static_cast<std::string*>(into)->append(values[i] != nullptr ? values[i] : "").append(" ");
-      return 0;
-    };
-    if (sqlite3_exec(database, sql.c_str(), add, &text, nullptr) != SQLITE_OK)
-      text = sqlite3_errmsg(database);
-    sqlite3_close(database);
-    return text;
-  }
-
-  test_support::TemporaryFolder folder;
-  ArchiveConfig config{.file = folder.path() / "plc.archive"};
-};
 
 TEST_F(ArchiveTest, each_power_up_goes_on_in_the_same_file) {
   for (std::uint64_t power_up = 1; power_up <= 2; ++power_up)
@@ -67,18 +27,47 @@ TEST_F(ArchiveTest, the_oldest_rows_make_room) {  // I2
   EXPECT_EQ(query("SELECT count(*), min(scan_number), max(scan_number) FROM event"), "100 300 399 ");
 }
 
-TEST_F(ArchiveTest, file_and_wal_stay_within_their_bytes) {  // I3
+TEST_F(ArchiveTest, of_a_batch_longer_than_the_archive_the_newest_rows_are_stored_and_counted) {  // I1
+  config.rows_max = 100;
+  auto archive = ArchiveDatabase::open(config);
+  EXPECT_EQ(archive->append(numbered_from(0, 100)).value(), 100U);
+  EXPECT_EQ(archive->append(numbered_from(100, 250)).value(), 100U);
+  EXPECT_EQ(query("SELECT count(*), min(scan_number), max(scan_number) FROM event"), "100 250 349 ");
+}
+
+TEST_F(ArchiveTest,
+       a_batch_longer_than_the_file_may_be_is_cut_to_what_fits_even_with_the_longest_rows) {  // I1, I3
+  config.bytes_max = ArchiveConfig::bytes_min;
+  auto archive = ArchiveDatabase::open(config);
+  soft_plc::EventRecord longest{.kind = soft_plc::EventKind::scans, .cycle = 0xFF, .code = 0xFFFF};
+  longest.time_ns = longest.values[0] = std::numeric_limits<std::int64_t>::max();
+  longest.scan_number = std::numeric_limits<std::uint64_t>::max() / 2;
+  longest.values.fill(std::numeric_limits<std::int64_t>::min());
+  const std::vector<soft_plc::EventRecord> batch(20'000, longest);
+  for (int i = 0; i < 3; ++i) {
+    const auto stored = archive->append(batch);
+    ASSERT_TRUE(stored) << stored.error().message;
+    EXPECT_EQ(query("SELECT count(*) FROM event"), std::to_string(*stored) + " ");
+    EXPECT_LE(bytes_of_file_and_wal(),
+              config.bytes_max + config.wal_bytes_max + ArchiveDatabase::batch_bytes(*stored));
+  }
+}
+
+TEST_F(ArchiveTest, file_and_wal_together_stay_within_their_bytes) {  // I3
   config.bytes_max = ArchiveConfig::bytes_min;
   config.wal_bytes_max = ArchiveConfig::wal_bytes_min;
   auto archive = ArchiveDatabase::open(config);
-  for (std::uint64_t batch = 0; batch < 60; ++batch) {
-    const auto stored = archive->append(numbered_from(batch * 1000, 1000));
-    ASSERT_TRUE(stored) << stored.error().message;
-    ASSERT_LE(std::filesystem::file_size(config.file), static_cast<std::uintmax_t>(config.bytes_max));
-    ASSERT_LE(std::filesystem::file_size(config.file.string() + "-wal"),
-              static_cast<std::uintmax_t>(2 * config.wal_bytes_max));
+  std::uint64_t first = 0;
+  for (const std::size_t rows : {1U, 10U, 100U, 1000U, 4000U}) {
+    for (int batch = 0; batch < 40; ++batch, first += rows) {
+      const auto stored = archive->append(numbered_from(first, rows));
+      ASSERT_TRUE(stored) << stored.error().message;
+      ASSERT_LE(bytes_of_file_and_wal(),
+                config.bytes_max + config.wal_bytes_max + ArchiveDatabase::batch_bytes(rows));
+      ASSERT_LE(std::filesystem::file_size(config.file), static_cast<std::uintmax_t>(config.bytes_max));
+    }
   }
-  EXPECT_EQ(query("SELECT max(scan_number) FROM event"), "59999 ");
+  EXPECT_EQ(query("SELECT max(scan_number) FROM event"), std::to_string(first - 1) + " ");
 }
 
 TEST_F(ArchiveTest, a_file_that_is_no_archive_is_refused_and_left_as_it_is) {  // I4
@@ -118,26 +107,6 @@ TEST_F(ArchiveTest, a_missing_folder_and_a_limit_too_small_are_told) {
   EXPECT_EQ(ArchiveDatabase::open(config).error().code, ArchiveErrorCode::limit_out_of_range);
 }
 
-TEST_F(ArchiveTest, a_producer_is_done_while_the_disk_is_blocked_and_all_is_counted) {
-  auto archive = ArchiveDatabase::open(config);
-  EventRing ring{64};
-  sqlite3* other = nullptr;
-  sqlite3_open(config.file.c_str(), &other);
-  ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
-  ArchiveWriter writer{std::move(*archive), {&ring}, {}, std::chrono::milliseconds{1}};
-  // The lock is given back only after the last push: had a push waited for the disk, this would not end.
-  for (std::uint64_t i = 0; i < 1000; ++i) (void)ring.push(numbered(i));
-  while (writer.counts().errors_count[static_cast<std::size_t>(ArchiveErrorCode::busy)] == 0)
-    std::this_thread::yield();
-  EXPECT_EQ(writer.counts().stored_count, 0u);
-  sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr);
-  sqlite3_close(other);
-  writer.stop();
-  EXPECT_GT(ring.lost_count(), 0u);
-  EXPECT_EQ(query("SELECT sum(CASE kind WHEN 8 THEN v0 ELSE 1 END) FROM event"), "1000 ");
-  EXPECT_NE(writer.counts().latest_error.find("plc.archive"), std::string::npos);
-}
-
 TEST_F(ArchiveTest, kill_in_the_middle_leaves_a_whole_file_with_all_rows_up_to_some_batch) {
   auto* const committed = static_cast<std::atomic<std::uint64_t>*>(
       mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
@@ -167,31 +136,6 @@ TEST_F(ArchiveTest, kill_in_the_middle_leaves_a_whole_file_with_all_rows_up_to_s
               "1 0 1 ");
   }
   munmap(committed, 4096);
-}
-
-/// The queries of the README, each line that begins with "    SELECT", through the sqlite3 shell.
-TEST_F(ArchiveTest, the_queries_of_the_readme_run_in_the_sqlite3_shell) {
-  if (test_support::run_in(folder.path(), "sqlite3 --version").exit_code != 0)
-    GTEST_SKIP() << "no sqlite3 shell";
-  config.signal_names = {"coolant flow"};
-  ASSERT_TRUE(ArchiveDatabase::open(config)->append(std::vector<EventRecord>{
-      {.kind = EventKind::scans, .time_ns = 1, .values = {1000, 100'000, 300'000, 150'000'000, 2}},
-      numbered(7),
-      {.kind = EventKind::fault, .code = 1, .time_ns = 2, .scan_number = 8, .values = {6, 150'000'001}},
-      {.kind = EventKind::mode_change, .code = 1},
-      {.kind = EventKind::port_write, .values = {100, 2, 5}},
-      {.kind = EventKind::signal_change, .values = {0, 1}}}));
-  std::ifstream readme{LTSIM_SOURCE_DIR "/emulator_models/archive/README.md"};
-  int queries = 0;
-  for (std::string line; std::getline(readme, line);) {
-    if (!line.starts_with("    SELECT")) continue;
-    ++queries;
-    std::ofstream{folder.path() / "query.sql"} << line << '\n';
-    const auto result = test_support::run_in(folder.path(), "sqlite3 plc.archive < query.sql");
-    EXPECT_EQ(result.exit_code, 0) << line << '\n' << result.output;
-    EXPECT_NE(result.output, "") << line;
-  }
-  EXPECT_GE(queries, 5);
 }
 
 }  // namespace

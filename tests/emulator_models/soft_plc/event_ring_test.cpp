@@ -45,12 +45,26 @@ TEST(EventRing, a_gap_is_told_once_in_the_place_where_it_is) {  // I3
   EventRing ring{2};
   for (std::uint64_t i = 0; i < 5; ++i) (void)ring.push(numbered(i));
   EXPECT_EQ(all_of(ring), (std::vector{numbered(0), numbered(1)}));
-  EXPECT_EQ(ring.lost_unreported(), 3u);
+  EXPECT_EQ(ring.gap(), (EventRecord{.kind = EventKind::records_lost, .scan_number = 4, .values = {3}}));
   EXPECT_TRUE(ring.push(numbered(5)));
   const EventRecord gap{.kind = EventKind::records_lost, .scan_number = 5, .values = {3}};
   EXPECT_EQ(all_of(ring), (std::vector{gap, numbered(5)}));
-  EXPECT_EQ(ring.lost_unreported(), 0u);
+  EXPECT_EQ(ring.gap(), std::nullopt);
   EXPECT_EQ(ring.lost_count(), 3u);
+}
+
+TEST(EventRing, of_a_closed_ring_all_that_was_not_taken_is_lost) {  // I2
+  EventRing ring{4};
+  for (std::uint64_t i = 0; i < 6; ++i) (void)ring.push(numbered(i));  // 2 lost
+  (void)all_of(ring);
+  (void)ring.push(numbered(6));  // with the gap's record
+  (void)all_of(ring);
+  (void)ring.push(numbered(7));
+  EXPECT_EQ(ring.lost_count(), 2u);
+  ring.close();
+  EXPECT_EQ(ring.lost_count(), 3u);
+  for (std::uint64_t i = 8; i < 21; ++i) (void)ring.push(numbered(i));
+  EXPECT_EQ(ring.lost_count(), 16u);
 }
 
 TEST(EventRing, between_two_threads_nothing_is_lost_uncounted_and_nothing_torn) {  // I1, I2, I4
@@ -83,7 +97,7 @@ TEST(EventRing, between_two_threads_nothing_is_lost_uncounted_and_nothing_torn) 
     }
   }
   producer.join();
-  EXPECT_EQ(expected + ring.lost_unreported(), records + 1);
+  EXPECT_EQ(expected + static_cast<std::uint64_t>(ring.gap().value_or(EventRecord{}).values[0]), records + 1);
 }
 
 }  // namespace
