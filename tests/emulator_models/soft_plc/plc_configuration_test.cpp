@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
 #include <thread>
 
@@ -125,6 +126,26 @@ TEST(ConfiguredPlc, a_period_may_change_in_RUN_and_a_name_only_in_STOP) {
   EXPECT_EQ(rig.plc.plc()->name(0), "c");
   EXPECT_EQ(plc->gateway().submit({.cycle = 0, .items = {{.section = {0, 1}, .written = {}}}}).error(),
             GatewayError::closed);
+}
+
+// I2: whatever the threads do, a RUN that was accepted is carried out by the PLC that is there afterwards.
+TEST(ConfiguredPlc, a_RUN_that_comes_while_another_PLC_is_loaded_is_refused_or_prevents_it) {
+  Configured rig;
+  ASSERT_TRUE(rig.plc.reload(good));
+  for (int i = 0; i < 30; ++i) {
+    const auto old = rig.plc.plc();
+    std::atomic<bool> accepted{false};
+    std::thread orders{[&] { accepted = old->order_run(StartKind::cold); }};
+    const std::string name = i % 2 == 0 ? "\"c\"" : "\"a\"";
+    const bool loaded = rig.plc.reload(replaced(good, "\"a\"", name)).has_value();
+    orders.join();
+    ASSERT_NE(loaded, accepted) << "in turn " << i;
+    ASSERT_EQ(loaded, rig.plc.plc() != old);
+    if (!accepted) continue;
+    old->order_stop();
+    while (!old->is_stopped()) std::this_thread::yield();
+    ASSERT_TRUE(rig.plc.reload(replaced(good, "\"a\"", name)));
+  }
 }
 
 TEST(ConfiguredPlc, a_driver_of_an_unknown_kind_is_refused) {
