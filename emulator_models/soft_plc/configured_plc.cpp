@@ -104,6 +104,11 @@ PlcConfiguration ConfiguredPlc::configuration() const {
   return configuration_;
 }
 
+std::chrono::milliseconds ConfiguredPlc::answer_timeout() const {
+  const std::lock_guard lock{mutex_};
+  return configuration_.answer_timeout;
+}
+
 std::optional<RunTimeFault> ConfiguredPlc::run_time_fault(std::size_t index) const {
   const std::lock_guard lock{mutex_};
   return index < programs_.size() ? programs_[index]->run_time_fault() : std::nullopt;

@@ -44,6 +44,8 @@ class ConfiguredPlc {
   /// The PLC of now; one that was replaced refuses what is asked of its gateway. None before the first reload.
   [[nodiscard]] std::shared_ptr<SoftPlc> plc() const;
   [[nodiscard]] PlcConfiguration configuration() const;
+  /// For field devices that wait at the gateway.
+  [[nodiscard]] std::chrono::milliseconds answer_timeout() const;
   /// @param index  of a cycle of plc()
   /// @return       where its program has failed, since its last start; none for an index that is not there
   [[nodiscard]] std::optional<RunTimeFault> run_time_fault(std::size_t index) const;

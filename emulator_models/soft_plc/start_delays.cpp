@@ -40,7 +40,8 @@ nanoseconds StartDelays::percentile(std::uint64_t permille) const noexcept {
     if (seen < wanted) continue;
     const std::size_t range = step / steps_per_range;
     const nanoseconds width = (range_ends[range] - begin_of(range)) / steps_per_range;
-    return std::min(longest_, begin_of(range) + width * static_cast<std::int64_t>(step % steps_per_range + 1));
+    return std::min(longest_,
+                    begin_of(range) + width * static_cast<std::int64_t>(step % steps_per_range + 1));
   }
   return longest_;
 }
