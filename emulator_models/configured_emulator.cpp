@@ -83,7 +83,7 @@ class Ports {
   std::vector<std::thread> threads_;
 };
 
-/// Tells faults and lamp, each once.
+/// Tells RUN, STOP, faults and lamp, each once.
 class Watcher {
  public:
   void look(const ConfiguredPlc& configured) {
@@ -92,6 +92,9 @@ class Watcher {
       plc_ = plc;
       told_.assign(plc->cycles_count(), std::nullopt);
     }
+    const bool stopped = plc->is_stopped();
+    if (stopped != stopped_) say(stopped ? "STOP" : "RUN");
+    stopped_ = stopped;
     const bool lamp = plc->alarm_lamp();
     if (lamp != lamp_) complain(lamp ? "alarm lamp on, outputs are safe" : "alarm lamp off");
     lamp_ = lamp;
@@ -115,6 +118,7 @@ class Watcher {
 
   std::shared_ptr<SoftPlc> plc_;
   std::vector<std::optional<soft_plc::Fault>> told_;
+  bool stopped_ = true;
   bool lamp_ = false;
 };
 
@@ -133,7 +137,6 @@ class ConfiguredEmulator {
     if (const int code = ports.open(port); code != exit_ended) return code;
     introduce();
     static_cast<void>(plc_.plc()->order_run(soft_plc::StartKind::cold));
-    say("RUN");
     watch();
     plc_.plc()->stop_now();
     watcher_.look(plc_);
@@ -165,6 +168,7 @@ class ConfiguredEmulator {
     sigemptyset(&signals);
     for (const int signal : handled_signals) sigaddset(&signals, signal);
     const auto end = steady_clock::now() + std::chrono::seconds{options_.seconds};
+    watcher_.look(plc_);
     while (options_.seconds == 0 || steady_clock::now() < end) {
       const int signal = sigtimedwait(&signals, nullptr, &look_interval);
       watcher_.look(plc_);
@@ -190,10 +194,7 @@ class ConfiguredEmulator {
     const auto plc = plc_.plc();
     if (!plc->is_stopped()) {
       plc->order_stop();
-      say("STOP");
-    } else if (plc->order_reset() && plc->order_run(soft_plc::StartKind::cold)) {
-      say("RUN");
-    } else {
+    } else if (!plc->order_reset() || !plc->order_run(soft_plc::StartKind::cold)) {
       complain("RUN refused: a cycle has not come back from where it was stopped");
     }
   }

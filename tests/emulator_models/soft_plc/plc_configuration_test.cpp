@@ -69,6 +69,19 @@ TEST(PlcConfiguration, each_mistake_is_refused_with_its_place_and_the_way_out) {
   EXPECT_EQ(refusal("[plc]\n").rfind("dir/plc.toml:1:1: a PLC has 1 to 32 cycles", 0), 0U);
 }
 
+TEST(PlcConfiguration, fixed_inputs_are_bytes_of_a_simulated_driver_and_no_more_than_its_inputs) {
+  const auto with = [](const std::string& kind, const std::string& values) {
+    return good + "[[driver]]\nname = \"d\"\nkind = \"" + kind +
+           "\"\nperiod_ms = 1\ninputs = { first_byte = 0, bytes = 2 }\nfixed_inputs = [" + values + "]\n";
+  };
+  EXPECT_EQ(refusal(with("simulated", "1, 255")), "taken");
+  EXPECT_EQ(refusal(with("simulated", "1, 2, 3")),
+            "dir/plc.toml:12:16: fixed_inputs has 3 bytes, but inputs only 2");
+  EXPECT_EQ(refusal(with("propulsion", "1")),
+            "dir/plc.toml:12:16: fixed_inputs belongs to kind \"simulated\"; leave it out");
+  EXPECT_NE(refusal(with("simulated", "256")).find("from 0 to 255"), std::string::npos);
+}
+
 TEST(PlcConfiguration,
      a_program_that_writes_a_word_of_another_cycle_is_refused_with_the_line_of_the_program) {
   const std::string two = good + "[[cycle]]\nname = \"b\"\nprogram = \"b.il\"\nperiod_ms = 1\n";
