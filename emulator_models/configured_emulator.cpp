@@ -8,6 +8,7 @@
 #include <cstring>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -83,7 +84,7 @@ class Ports {
   std::vector<std::thread> threads_;
 };
 
-/// Tells RUN, STOP, faults and lamp, each once.
+/// Tells RUN, STOP, faults, lamp and a refused SCHED_FIFO, each once.
 class Watcher {
  public:
   void look(const ConfiguredPlc& configured) {
@@ -91,6 +92,11 @@ class Watcher {
     if (plc != plc_) {
       plc_ = plc;
       told_.assign(plc->cycles_count(), std::nullopt);
+    }
+    // The threads ask for it themselves, so that the answer comes some time after their start.
+    if (std::string refusal = configured.realtime_refusal(); refusal != refusal_) {
+      refusal_ = std::move(refusal);
+      if (!refusal_.empty()) complain(refusal_);
     }
     const bool stopped = plc->is_stopped();
     if (stopped != stopped_) say(stopped ? "STOP" : "RUN");
@@ -118,6 +124,7 @@ class Watcher {
 
   std::shared_ptr<SoftPlc> plc_;
   std::vector<std::optional<soft_plc::Fault>> told_;
+  std::string refusal_;
   bool stopped_ = true;
   bool lamp_ = false;
 };
@@ -158,7 +165,6 @@ class ConfiguredEmulator {
     say(fmt::format(
         "{}: {} cycles {}", options_.path, configuration.cycles.size(),
         configuration.threading == soft_plc::PlcThreading::one ? "on one thread" : "on a thread for each"));
-    if (const std::string refusal = plc_.realtime_refusal(); !refusal.empty()) complain(refusal);
     if (!configuration.archive.path.empty())
       complain("the archive of the configuration is not written in this mode");
   }
