@@ -27,7 +27,18 @@ class StartDelays {
       std::chrono::microseconds{500'000}, std::chrono::microseconds{1'000'000}};
 
   /// @param delay  not negative
-  void add(std::chrono::nanoseconds delay) noexcept;
+  void add(std::chrono::nanoseconds delay) noexcept {
+    ++count_;
+    longest_ = std::max(longest_, delay);
+    std::size_t range = 0;
+    while (range < range_ends.size() && delay >= range_ends[range]) ++range;
+    if (range == range_ends.size()) {
+      ++steps_.back();
+    } else {
+      ++steps_[range * steps_per_range +
+               static_cast<std::size_t>((delay - begin_of(range)) / step_of(range))];
+    }
+  }
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   /// @param range  index into range_ends
@@ -40,6 +51,13 @@ class StartDelays {
 
  private:
   static constexpr std::size_t steps_per_range = 10;
+  static constexpr std::chrono::nanoseconds begin_of(std::size_t range) noexcept {
+    return range == 0 ? std::chrono::nanoseconds{0} : std::chrono::nanoseconds{range_ends[range - 1]};
+  }
+  static constexpr std::chrono::nanoseconds step_of(std::size_t range) noexcept {
+    return (range_ends[range] - begin_of(range)) / steps_per_range;
+  }
+
   static constexpr std::size_t steps_count = range_ends.size() * steps_per_range;
 
   std::array<std::uint64_t, steps_count + 1> steps_{};  ///< the last one: beyond
