@@ -53,6 +53,8 @@ class Ports {
     if (pty_) pty_->request_stop();
     if (handler_) handler_->request_stop();
     for (std::thread& thread : threads_) thread.join();
+    if (segment_ && segment_->kernel_is_attached())
+      complain("a kernel is still attached; it has to be started again to find the next emulator");
   }
 
   /// @return an exit code; exit_ended: all that is asked for is served

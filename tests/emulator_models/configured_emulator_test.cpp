@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <unistd.h>
 
@@ -15,6 +16,16 @@ namespace emulator_models {
 namespace {
 
 using protocol::fx::examples::bytes;
+
+/// Sends a read of one word until it is not zero.
+void wait_until_not_zero(const SerialLine& line, const char* read) {
+  std::vector<std::byte> answer;
+  do {
+    line.send(bytes(read));
+    answer = line.receive(8);
+    ASSERT_EQ(answer.size(), 8U);
+  } while (answer == bytes("02 30 30 30 30 03 43 33"));
+}
 
 /// A folder with a configuration of two cycles; the second runs `program`.
 struct ConfiguredEmulator : testing::Test {
@@ -57,7 +68,7 @@ TEST_F(ConfiguredEmulator, sigterm_and_sigint_end_it_cleanly) {
   }
 }
 
-// I20, in real time. An hour of steps would be needed to reach the bound of instructions of a scan.
+// I20, in real time.
 TEST_F(ConfiguredEmulator, an_endless_loop_is_stopped_by_the_watchdog_and_told) {
   write("loop.il", "PROGRAM loop\nagain:\nJMP again\nEND_PROGRAM\n");
   for (const char* const threads : {"one", "per-cycle"}) {
@@ -115,15 +126,18 @@ TEST_F(ConfiguredEmulator, the_programming_port_shows_words_of_the_first_cycle) 
   configure("good.il");
   EmulatorProcess emulator{{"--config", path, "--pty"}};
   const SerialLine line{emulator.wait_for_line("pty: ")};
-  // D0 counts scans; 0 and 1 only in the first two.
-  std::vector<std::byte> answer;
-  do {
-    line.send(bytes("02 30 31 30 30 30 30 32 03 35 36"));
-    answer = line.receive(8);
-    ASSERT_EQ(answer.size(), 8U);
-  } while (answer == bytes("02 30 30 30 30 03 43 33"));
+  wait_until_not_zero(line, "02 30 31 30 30 30 30 32 03 35 36");  // D0 counts scans
   emulator.send_signal(SIGTERM);
   EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST_F(ConfiguredEmulator, the_filling_station_of_the_example_fills_bottles) {
+  EmulatorProcess emulator{{"--config", EXAMPLE_CONFIGURATION, "--pty"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  wait_until_not_zero(line, "02 30 31 30 31 32 30 32 03 35 39");  // D9 counts them
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_EQ(emulator.printed().find("fault"), std::string::npos) << emulator.printed();
 }
 
 TEST_F(ConfiguredEmulator, bad_usage_and_bad_files_are_2) {
