@@ -21,6 +21,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include "emulator_models/configured_emulator.hpp"
 #include "emulator_models/emulator_handler.hpp"
 #include "emulator_models/emulator_options.hpp"
 #include "emulator_models/fx_plc.hpp"
@@ -169,11 +170,14 @@ int checked_main(int argc, char** argv) {
   CLI::App app{
       "An FX PLC that runs instruction list, with a machine behind it, for a kernel that has no PLC."};
   add_options(app, options);
+  ConfiguredEmulatorOptions configured;
+  add_configured_options(app, configured);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ended : exit_usage;
   }
+  if (!configured.path.empty()) return run_configured_emulator(configured, options);
   if (options.segment_name.empty() && !options.pty)
     return complain(exit_usage, "nothing to serve: give --segment NAME, --pty, or both (--help)");
   return load_and_serve(options);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "emulator_models/soft_plc/il_cycle.hpp"
-
 namespace emulator_models::soft_plc {
 namespace {
 
@@ -54,21 +52,29 @@ tl::expected<void, std::string> ConfiguredPlc::reload(std::string_view text) {
     for (const ConfiguredCycle& cycle : next->cycles) scans.push_back(cycle.config.scan);
     if (auto done = plc_->reconfigure(scans, next->gateway); !done) return done;
   } else {
-    if (plc_ && !plc_->is_stopped())
-      return tl::unexpected{file_name_ + ": changes " + change +
-                            ", which cannot be done in RUN; order STOP, load it again, and order RUN"};
-    if (auto built = build(*next); !built) return built;
+    if (plc_ && !plc_->is_stopped()) return tl::unexpected{needs_stop(change)};
+    if (auto built = build(*next, change); !built) return built;
   }
   configuration_ = std::move(*next);
   return {};
 }
 
-tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next) {
+std::string ConfiguredPlc::needs_stop(const std::string& change) const {
+  return file_name_ + ": changes " + change +
+         ", which cannot be done in RUN; order STOP, load it again, and order RUN";
+}
+
+tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next,
+                                                     const std::string& change) {
   SoftPlcSetup setup;
   setup.slice_intervals = next.slice_intervals;
   setup.gateway = next.gateway;
-  for (const ConfiguredCycle& cycle : next.cycles)
-    setup.cycles.push_back({cycle.name, cycle.config, cycle.sends, std::make_unique<IlCycle>(cycle.program)});
+  std::vector<const IlCycle*> programs;
+  for (const ConfiguredCycle& cycle : next.cycles) {
+    auto body = std::make_unique<IlCycle>(cycle.program);
+    programs.push_back(body.get());
+    setup.cycles.push_back({cycle.name, cycle.config, cycle.sends, std::move(body)});
+  }
   for (const ConfiguredDriver& driver : next.drivers) {
     auto made = factory_(driver);
     if (!made)
@@ -78,8 +84,11 @@ tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& nex
   }
   auto plc = SoftPlc::make(std::move(setup), clock_.now());
   if (!plc) return tl::unexpected{file_name_ + ": " + plc.error()};
+  // Meanwhile somebody may have ordered RUN.
+  if (plc_ && !plc_->retire()) return tl::unexpected{needs_stop(change)};
   if (plc_) plc_->gateway().close();
   threads_.reset();
+  programs_ = std::move(programs);
   plc_ = std::move(*plc);
   threads_ = std::make_unique<PlcThreads>(*plc_, clock_, next.threading, next.realtime);
   return {};
@@ -93,6 +102,16 @@ std::shared_ptr<SoftPlc> ConfiguredPlc::plc() const {
 PlcConfiguration ConfiguredPlc::configuration() const {
   const std::lock_guard lock{mutex_};
   return configuration_;
+}
+
+std::chrono::milliseconds ConfiguredPlc::answer_timeout() const {
+  const std::lock_guard lock{mutex_};
+  return configuration_.answer_timeout;
+}
+
+std::optional<RunTimeFault> ConfiguredPlc::run_time_fault(std::size_t index) const {
+  const std::lock_guard lock{mutex_};
+  return index < programs_.size() ? programs_[index]->run_time_fault() : std::nullopt;
 }
 
 std::string ConfiguredPlc::realtime_refusal() const {

@@ -5,7 +5,9 @@
 //
 // Invariants
 //   I1  a configuration that is bad, or that needs a STOP which is not there, changes nothing: the old one goes on.
-//   I2  what comes over the wire takes the same way as a file, once its sum is right.
+//   I2  a PLC that is replaced takes no RUN any more, in whatever order the two are asked for: a RUN that was accepted
+//       is one of the PLC that goes on.
+//   I3  what comes over the wire takes the same way as a file, once its sum is right.
 // Any thread; reload() holds up no scan.
 #pragma once
 
@@ -17,6 +19,7 @@
 
 #include <tl/expected.hpp>
 
+#include "emulator_models/soft_plc/il_cycle.hpp"
 #include "emulator_models/soft_plc/plc_configuration.hpp"
 
 namespace emulator_models::soft_plc {
@@ -41,10 +44,17 @@ class ConfiguredPlc {
   /// The PLC of now; one that was replaced refuses what is asked of its gateway. None before the first reload.
   [[nodiscard]] std::shared_ptr<SoftPlc> plc() const;
   [[nodiscard]] PlcConfiguration configuration() const;
+  /// For field devices that wait at the gateway.
+  [[nodiscard]] std::chrono::milliseconds answer_timeout() const;
+  /// @param index  of a cycle of plc()
+  /// @return       where its program has failed, since its last start; none for an index that is not there
+  [[nodiscard]] std::optional<RunTimeFault> run_time_fault(std::size_t index) const;
   [[nodiscard]] std::string realtime_refusal() const;
 
  private:
-  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next);
+  [[nodiscard]] std::string needs_stop(const std::string& change) const;
+  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next,
+                                                      const std::string& change);
 
   const std::string file_name_;
   const FileReader reader_;
@@ -54,6 +64,7 @@ class ConfiguredPlc {
   // All guarded by mutex_.
   PlcConfiguration configuration_;
   std::shared_ptr<SoftPlc> plc_;
+  std::vector<const IlCycle*> programs_;  ///< of plc_
   std::unique_ptr<PlcThreads> threads_;
 };
 

@@ -10,9 +10,13 @@ namespace emulator_models::soft_plc {
 
 class Gateway::Ticket {
  public:
-  explicit Ticket(GatewayRequest asked) : request{std::move(asked)} {}
+  explicit Ticket(GatewayRequest asked) : request{std::move(asked)} {
+    for (const GatewayItem& item : request.items)
+      answer.read.emplace_back(item.written.empty() ? item.section.bytes : 0);
+  }
 
   const GatewayRequest request;
+  GatewayAnswer answer;          ///< with room for what is read, until it becomes the result
   std::optional<Result> result;  ///< guarded by the gateway's mutex
 };
 
@@ -23,18 +27,17 @@ std::span<std::byte> area_of(const CycleImage& image, Area area) noexcept {
   return area == Area::outputs ? image.outputs : image.memory;
 }
 
-GatewayAnswer carry_out(const GatewayRequest& request, const CycleImage& image, std::uint64_t scan_number) {
-  GatewayAnswer answer{scan_number, {}};
-  for (const GatewayItem& item : request.items) {
-    const auto at = area_of(image, item.area).begin() + static_cast<std::ptrdiff_t>(item.section.first);
-    auto& read = answer.read.emplace_back();
-    if (item.written.empty()) {
-      read.assign(at, at + static_cast<std::ptrdiff_t>(item.section.bytes));
-    } else {
-      std::ranges::copy(item.written, at);
-    }
+/// @param read  of the length that the item asks for
+void carry_out(const GatewayItem& item, const CycleImage& image, std::span<std::byte> read) noexcept {
+  const std::span<std::byte> at = area_of(image, item.area).subspan(item.section.first);
+  if (item.bit) {
+    const std::byte mask{static_cast<unsigned char>(1U << *item.bit)};
+    at[0] = item.written[0] == std::byte{0} ? at[0] & ~mask : at[0] | mask;
+  } else if (item.written.empty()) {
+    std::ranges::copy(at.first(read.size()), read.begin());
+  } else {
+    std::ranges::copy(item.written, at.begin());
   }
-  return answer;
 }
 
 }  // namespace
@@ -49,6 +52,8 @@ std::string_view to_string(GatewayError error) noexcept {
       return "the item lies outside of the areas I, Q and M of this cycle";
     case GatewayError::not_writable:
       return "inputs and outputs are read only; write to memory, and let the program set the output";
+    case GatewayError::bad_bit:
+      return "a bit is 0 to 7 and is written with one byte, 0 for off; read the byte that holds it";
     case GatewayError::owned_by_other_cycle:
       return "another cycle sends these words; write to the cycle that owns them";
     case GatewayError::queue_full:
@@ -66,6 +71,7 @@ Gateway::Gateway(const GatewayLimits& limits, const std::vector<CycleImage>& ima
     : exchange_{exchange}, limits_{limits} {
   for (const CycleImage& image : images) {
     Cycle& cycle = cycles_.emplace_back();
+    cycle.queue.reserve(limits_.queue_max);
     for (const Area area : {Area::inputs, Area::outputs, Area::memory})
       cycle.bytes[static_cast<std::size_t>(area)] = area_of(image, area).size();
   }
@@ -76,6 +82,7 @@ tl::expected<void, GatewayError> Gateway::check_item(const GatewayItem& item,
   const Section section{item.section.first, item.written.empty() ? item.section.bytes : item.written.size()};
   const std::size_t area_bytes = cycles_[cycle].bytes[static_cast<std::size_t>(item.area)];
   if (section.bytes == 0 || !section.fits(area_bytes)) return tl::unexpected{GatewayError::out_of_range};
+  if (item.bit && (*item.bit > 7 || item.written.size() != 1)) return tl::unexpected{GatewayError::bad_bit};
   if (item.written.empty()) return {};
   if (item.area != Area::memory) return tl::unexpected{GatewayError::not_writable};
   if (exchange_.is_received(cycle, section)) return tl::unexpected{GatewayError::owned_by_other_cycle};
@@ -142,12 +149,17 @@ void Gateway::serve(std::size_t cycle, const CycleImage& image, PlcObserver* obs
   if (observer != nullptr) tell_of_writes(cycle, *observer);
   Cycle& served = cycles_[cycle];
   ++served.scan_number;
-  for (std::size_t i = 0; i < limits_.requests_per_scan_max && !served.queue.empty(); ++i) {
-    Ticket& ticket = *served.queue.front();
-    ticket.result = carry_out(ticket.request, image, served.scan_number);
-    served.queue.pop_front();
-    answered_.notify_all();
+  const std::size_t count = std::min(limits_.requests_per_scan_max, served.queue.size());
+  if (count == 0) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    Ticket& ticket = *served.queue[i];
+    for (std::size_t k = 0; k < ticket.request.items.size(); ++k)
+      carry_out(ticket.request.items[k], image, ticket.answer.read[k]);
+    ticket.answer.scan_number = served.scan_number;
+    ticket.result.emplace(std::move(ticket.answer));
   }
+  served.queue.erase(served.queue.begin(), served.queue.begin() + static_cast<std::ptrdiff_t>(count));
+  answered_.notify_all();
 }
 
 void Gateway::close() noexcept {
@@ -163,6 +175,7 @@ void Gateway::close() noexcept {
 void Gateway::set_limits(const GatewayLimits& limits) noexcept {
   const std::lock_guard lock{mutex_};
   limits_ = limits;
+  for (Cycle& cycle : cycles_) cycle.queue.reserve(limits_.queue_max);
 }
 
 std::uint64_t Gateway::refused_count() const noexcept {

@@ -9,6 +9,7 @@
 //   I2  what is written in scan k was asked for before k began: no scan sees a write arrive in its middle.
 //   I3  a request that was given up after its time is not carried out afterwards.
 //   I4  per scan at most `requests_per_scan_max` requests are carried out, in the order of their arrival.
+//   I5  carrying out a request takes no memory: the answer has got it when the request was taken.
 // Any thread.
 #pragma once
 
@@ -17,9 +18,9 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct GatewayItem {
   Area area = Area::memory;        ///< inputs, outputs or memory
   Section section;                 ///< for a write: only `first` counts
   std::vector<std::byte> written;  ///< empty: a read
+  /// 0 to 7: a write of this bit alone; `written` is one byte, 0 = off. The other bits of the byte stay as they are.
+  std::optional<std::uint8_t> bit{};
 };
 
 struct GatewayRequest {
@@ -61,6 +64,7 @@ enum class GatewayError : std::uint8_t {
   request_too_long,
   out_of_range,
   not_writable,
+  bad_bit,
   owned_by_other_cycle,
   queue_full,
   timed_out,
@@ -101,7 +105,7 @@ class Gateway {
  private:
   struct Cycle {
     std::array<std::size_t, areas_count> bytes{};
-    std::deque<std::shared_ptr<Ticket>> queue;
+    std::vector<std::shared_ptr<Ticket>> queue;  ///< of a capacity that no scan has to extend
     std::uint64_t scan_number = 0;
   };
   [[nodiscard]] tl::expected<void, GatewayError> check(const GatewayRequest& request) const noexcept;

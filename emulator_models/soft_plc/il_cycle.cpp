@@ -54,10 +54,11 @@ void IlCycle::start(StartKind kind) noexcept {
 }
 
 Progress IlCycle::execute(const ScanStep& step) noexcept {
-  const auto run = machine_.run_scan({inputs_, outputs_, memory_}, step.scan_start);
-  if (run) return Progress::finished;
+  const auto end = machine_.run_slice({inputs_, outputs_, memory_}, step.scan_start, slice_instructions,
+                                      scan_instructions_max);
+  if (end) return *end == SliceEnd::scan ? Progress::finished : Progress::unfinished;
   const std::lock_guard lock{mutex_};
-  fault_ = run.error();
+  fault_ = end.error();
   return Progress::failed;
 }
 

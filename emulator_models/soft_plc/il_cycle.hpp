@@ -1,9 +1,11 @@
 // An instruction-list program as the body of a cycle, with its process image.
 //
-// A slice is a whole run of the program, which its budget of instructions bounds. Where IlMachine comes to run in
-// slices of its own, execute() is the place to pass `unfinished` on.
+// A slice ends at the first jump after slice_instructions: the watchdog, and cycles of other priorities, get a look
+// in between. So an endless loop is ended by the watchdog, by time; scan_instructions_max is only the bound of a scan
+// whose watchdog has been given hours.
 #pragma once
 
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -20,6 +22,10 @@ namespace emulator_models::soft_plc {
 
 class IlCycle final : public CycleBody {
  public:
+  /// 6 us of boolean rungs, 20 us of arithmetic: what a cycle of higher priority waits for at most.
+  static constexpr std::uint64_t slice_instructions = 2'048;
+  static constexpr std::uint64_t scan_instructions_max = 1'000'000'000;
+
   /// @param program  whose image needs do not exceed the bounds of cycle_body.hpp
   explicit IlCycle(IlProgram program);
 
@@ -27,7 +33,7 @@ class IlCycle final : public CycleBody {
   std::span<const std::byte> output_mask() const noexcept override { return output_mask_; }
   void start(StartKind kind) noexcept override;
   Progress execute(const ScanStep& step) noexcept override;
-  void give_up_scan() noexcept override {}
+  void give_up_scan() noexcept override { machine_.abandon_scan(); }
 
   /// From any thread.
   /// @return the latest run-time fault since the last start

@@ -1,10 +1,12 @@
 #include "emulator_models/soft_plc/output_gate.hpp"
 
+#include <utility>
+
 namespace emulator_models::soft_plc {
 
 std::uint64_t OutputGate::open(bool hold_outputs) noexcept {
   const std::lock_guard lock{mutex_};
-  if (open_ && !hold_outputs) outputs_ = safe_;
+  if (open_ && !hold_outputs) make_safe();
   open_ = true;
   return ++epoch_;
 }
@@ -26,8 +28,18 @@ bool OutputGate::close(std::uint64_t run) noexcept {
   if (!open_ || run != epoch_) return false;
   open_ = false;
   ++epoch_;
-  outputs_ = safe_;
+  make_safe();
   return true;
+}
+
+void OutputGate::make_safe() noexcept {
+  outputs_ = safe_;
+  if (on_safe_) on_safe_();
+}
+
+void OutputGate::on_safe(std::function<void()> listener) noexcept {
+  const std::lock_guard lock{mutex_};
+  on_safe_ = std::move(listener);
 }
 
 OutputGate::Frame OutputGate::frame() const noexcept {

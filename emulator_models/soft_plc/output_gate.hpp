@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 
@@ -56,10 +57,16 @@ class OutputGate {
     return true;
   }
 
+  /// Called whenever the outputs have become safe, within the critical section; it must not call the gate.
+  void on_safe(std::function<void()> listener) noexcept;
+
   [[nodiscard]] bool is_open() const noexcept;
   [[nodiscard]] std::uint64_t dropped_commits_count() const noexcept;
 
  private:
+  /// Under the lock.
+  void make_safe() noexcept;
+
   const Outputs safe_;
   mutable std::mutex mutex_;
   // All guarded by mutex_.
@@ -67,6 +74,7 @@ class OutputGate {
   std::uint64_t epoch_ = 0;  ///< counts opens and closes; while open, the run number
   bool open_ = false;
   std::uint64_t dropped_commits_count_ = 0;
+  std::function<void()> on_safe_;
 };
 
 }  // namespace emulator_models::soft_plc

@@ -183,6 +183,13 @@ class Parser {
         refuse(table.region("inputs"),
                fmt::format("driver {} brings some of these inputs; move one of them", other.config.name));
     }
+    for (const std::int64_t value : table.integers("fixed_inputs", 0, 255))
+      driver.fixed_inputs.push_back(static_cast<std::byte>(value));
+    if (!driver.fixed_inputs.empty() && driver.kind != "simulated")
+      refuse(table.region("fixed_inputs"), "fixed_inputs belongs to kind \"simulated\"; leave it out");
+    if (driver.fixed_inputs.size() > config.inputs.bytes)
+      refuse(table.region("fixed_inputs"), fmt::format("fixed_inputs has {} bytes, but inputs only {}",
+                                                       driver.fixed_inputs.size(), config.inputs.bytes));
     if (table.has("stale_bit")) config.stale_bit = stale_bit(table);
     table.refuse_the_rest();
     result_.drivers.push_back(std::move(driver));

@@ -36,6 +36,7 @@ struct ConfiguredCycle {
 struct ConfiguredDriver {
   std::string kind;  ///< means something to the DriverFactory only
   DriverConfig config;
+  std::vector<std::byte> fixed_inputs{};  ///< of kind "simulated"; at most as many as config.inputs has
 };
 
 /// Of the archive, which is built elsewhere.

@@ -27,40 +27,49 @@ void SteadyPlcClock::wait_until(std::condition_variable& wake, std::unique_lock<
 
 PlcThreads::PlcThreads(SoftPlc& plc, PlcClock& clock, PlcThreading threading, bool realtime)
     : plc_{plc}, clock_{clock}, realtime_{realtime} {
-  start(realtime_priority_of_watchdog, [this] { return plc_.supervise(clock_.now()); });
+  plc_.gate().on_safe([this] {
+    const std::lock_guard lock{mutex_};
+    ++safe_count_;
+    wake_.notify_all();
+  });
+  const auto soon = [this](nanoseconds due) { return std::min(due, clock_.now() + nanoseconds{wait_max}); };
+  start(realtime_priority_of_watchdog, AtEnd::nothing,
+        [this, soon] { return soon(plc_.supervise(clock_.now())); });
   for (std::size_t i = 0; i < plc_.io().drivers_count(); ++i) {
-    start(realtime_priority_of_drivers, [this, i] {
+    start(realtime_priority_of_drivers, AtEnd::once_more, [this, i] {
       const nanoseconds begin = clock_.now();
       plc_.io().exchange(i, plc_.gate(), [this] { return clock_.now(); });
       return begin + plc_.io().config(i).period;
     });
   }
   if (threading == PlcThreading::one) {
-    start(realtime_priority_of_watchdog - 1, [this] { return plc_.advance(clock_.now()); });
+    start(realtime_priority_of_watchdog - 1, AtEnd::nothing,
+          [this, soon] { return soon(plc_.advance(clock_.now())); });
     return;
   }
   for (std::size_t i = 0; i < plc_.cycles_count(); ++i) {
     const int below = static_cast<int>(std::min<std::size_t>(plc_.priority(i), cycles_max));
-    start(realtime_priority_of_watchdog - 1 - below,
-          [this, i] { return plc_.advance_cycle(i, clock_.now()); });
+    start(realtime_priority_of_watchdog - 1 - below, AtEnd::nothing,
+          [this, soon, i] { return soon(plc_.advance_cycle(i, clock_.now())); });
   }
 }
 
-void PlcThreads::start(int realtime_priority, std::function<nanoseconds()> work) {
-  threads_.emplace_back([this, realtime_priority, work = std::move(work)] {
+void PlcThreads::start(int realtime_priority, AtEnd at_end, std::function<nanoseconds()> work) {
+  threads_.emplace_back([this, realtime_priority, at_end, work = std::move(work)] {
     if (realtime_) ask_for_realtime(realtime_priority);
     repeat(work);
+    if (at_end == AtEnd::once_more) work();
   });
 }
 
 void PlcThreads::repeat(const std::function<nanoseconds()>& work) noexcept {
   std::unique_lock lock{mutex_};
   while (!stopping_) {
+    const std::uint64_t seen = safe_count_;
     lock.unlock();
     const nanoseconds due = work();
     lock.lock();
-    const nanoseconds now = clock_.now();
-    if (!stopping_ && due > now) clock_.wait_until(wake_, lock, std::min(due, now + nanoseconds{wait_max}));
+    while (!stopping_ && safe_count_ == seen && clock_.now() < due) clock_.wait_until(wake_, lock, due);
   }
 }
 
@@ -82,6 +91,7 @@ void PlcThreads::stop() noexcept {
   for (std::thread& thread : threads_) {
     if (thread.joinable()) thread.join();
   }
+  plc_.gate().on_safe(nullptr);
 }
 
 std::string PlcThreads::realtime_refusal() const {

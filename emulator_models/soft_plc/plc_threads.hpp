@@ -2,12 +2,14 @@
 //
 // Time and waiting come from a PlcClock, steady_clock by default. SCHED_FIFO is asked for on request, the watchdog above
 // all cycles; where the host refuses, the PLC runs as ordinary threads and says so.
-// stop() carries out a STOP: it closes the gate, so that the outputs are safe, and joins every thread. It waits for a
-// cycle or a driver that hangs, for a thread cannot be taken away from its code.
+// Outputs that have become safe wake every driver: they do not wait for its period.
+// stop() carries out a STOP: it closes the gate, so that the outputs are safe, lets each driver bring them to the field,
+// and joins every thread. It waits for a cycle or a driver that hangs, for a thread cannot be taken away from its code.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -43,7 +45,8 @@ enum class PlcThreading : std::uint8_t { one, per_cycle };
 
 class PlcThreads {
  public:
-  /// Longest wait: a cycle of a long period notices a fault of another one this late. Its outputs are safe at once.
+  /// Longest wait of a cycle and of the watchdog: so late does a cycle of a long period notice a fault of another one
+  /// when there were no outputs to make safe.
   static constexpr std::chrono::milliseconds wait_max{50};
 
   /// Starts all threads. PLC and clock must outlive them.
@@ -58,7 +61,8 @@ class PlcThreads {
   [[nodiscard]] std::string realtime_refusal() const;
 
  private:
-  void start(int realtime_priority, std::function<std::chrono::nanoseconds()> work);
+  enum class AtEnd : std::uint8_t { nothing, once_more };
+  void start(int realtime_priority, AtEnd at_end, std::function<std::chrono::nanoseconds()> work);
   void repeat(const std::function<std::chrono::nanoseconds()>& work) noexcept;
   void ask_for_realtime(int priority) noexcept;
 
@@ -67,8 +71,9 @@ class PlcThreads {
   const bool realtime_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool stopping_ = false;  ///< guarded by mutex_
-  int refusal_ = 0;        ///< an errno; guarded by mutex_
+  bool stopping_ = false;         ///< guarded by mutex_
+  std::uint64_t safe_count_ = 0;  ///< how often outputs have become safe; guarded by mutex_
+  int refusal_ = 0;               ///< an errno; guarded by mutex_
   std::vector<std::thread> threads_;
 };
 

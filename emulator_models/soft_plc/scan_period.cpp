@@ -12,6 +12,7 @@ ScanPeriod::ScanPeriod(nanoseconds period, OverrunRule rule, nanoseconds first_s
 }
 
 bool ScanPeriod::begin_scan(nanoseconds now) noexcept {
+  start_delay_ = now - due_;
   bool starts_were_lost = false;
   if (period_ > nanoseconds{0}) {
     const std::int64_t allowed = rule_ == OverrunRule::catch_up ? catch_up_max : 0;
@@ -21,7 +22,6 @@ bool ScanPeriod::begin_scan(nanoseconds now) noexcept {
       starts_were_lost = true;
     }
   }
-  start_delay_ = now - due_;
   return starts_were_lost;
 }
 

@@ -54,7 +54,7 @@ class ScanPeriod {
 
   [[nodiscard]] std::uint64_t overruns_count() const noexcept { return overruns_count_; }
   [[nodiscard]] std::uint64_t lost_starts_count() const noexcept { return lost_starts_count_; }
-  /// How late the latest scan started on its point of the grid.
+  /// How late the latest scan started: since it was due, starts that were lost over that included.
   [[nodiscard]] std::chrono::nanoseconds start_delay() const noexcept { return start_delay_; }
 
  private:

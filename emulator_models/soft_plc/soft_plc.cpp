@@ -76,13 +76,15 @@ SoftPlc::SoftPlc(SoftPlcSetup setup, ScanScheduler scheduler, nanoseconds now)
                        .program = std::make_unique<PlcCycle>(i, std::move(cycle.body), parts_, *gateway_),
                        .priority = cycle.config.priority,
                        .config = cycle.config.scan,
-                       .limit = std::nullopt});
+                       .limit = std::nullopt,
+                       .start_delays = {}});
   }
 }
 
 bool SoftPlc::order_run(StartKind start) noexcept {
   const std::lock_guard lock{mutex_};
   if (run_is_ordered_) return true;
+  if (is_retired_) return false;
   for (const Cycle& cycle : cycles_) {
     if (cycle.halt_pending) return false;
   }
@@ -107,6 +109,12 @@ void SoftPlc::stop_now() noexcept {
   static_cast<void>(parts_.gate.close(run_));
 }
 
+bool SoftPlc::retire() noexcept {
+  const std::lock_guard lock{mutex_};
+  is_retired_ = is_retired_ || is_stopped_locked();
+  return is_retired_;
+}
+
 bool SoftPlc::order_reset() noexcept {
   const std::lock_guard lock{mutex_};
   for (const Cycle& cycle : cycles_) {
@@ -121,7 +129,14 @@ void SoftPlc::prepare(std::size_t index, const ScanStep& step) noexcept {
   cycle.limit.reset();
   if (step.action == ScanAction::wait) return;
   cycle.limit = step.until;
-  if (step.action == ScanAction::initialise) cycle.program->begin_run(run_);
+  const ScanTask& task = scheduler_.cycle(index);
+  if (step.action == ScanAction::initialise) {
+    cycle.program->begin_run(run_);
+    cycle.start_delays = {};
+    cycle.start_delays.add(task.period().start_delay());
+  } else if (step.action == ScanAction::system_analysis && task.mode() == RunMode::run) {
+    cycle.start_delays.add(task.period().start_delay());
+  }
   if (step.action != ScanAction::enter_fault) return;
   if (!std::exchange(cycle.halt_pending, false)) stop_all(nanoseconds::min(), FaultCode::other_cycle);
   cycle.halt_pending = false;
@@ -222,8 +237,17 @@ CycleStatus SoftPlc::status(std::size_t index) const noexcept {
           task.period().lost_starts_count()};
 }
 
+StartDelays SoftPlc::start_delays(std::size_t index) const noexcept {
+  const std::lock_guard lock{mutex_};
+  return cycles_[index].start_delays;
+}
+
 bool SoftPlc::is_stopped() const noexcept {
   const std::lock_guard lock{mutex_};
+  return is_stopped_locked();
+}
+
+bool SoftPlc::is_stopped_locked() const noexcept {
   if (run_is_ordered_) return false;
   for (std::size_t i = 0; i < cycles_.size(); ++i) {
     if (scheduler_.cycle(i).mode() != RunMode::stop) return false;

@@ -29,6 +29,7 @@
 
 #include "emulator_models/soft_plc/plc_cycle.hpp"
 #include "emulator_models/soft_plc/scan_scheduler.hpp"
+#include "emulator_models/soft_plc/start_delays.hpp"
 
 namespace emulator_models::soft_plc {
 
@@ -68,11 +69,14 @@ class SoftPlc {
   SoftPlc& operator=(const SoftPlc&) = delete;
   ~SoftPlc() { gateway_->close(); }
 
-  /// @return false = refused: there is a fault that is not reset
+  /// @return false = refused: there is a fault that is not reset, or the PLC is retired
   bool order_run(StartKind start) noexcept;
   void order_stop() noexcept;
   /// order_stop, and the outputs are safe on return: for the end of the PLC, when no scan will carry the order out.
   void stop_now() noexcept;
+  /// For who replaces the PLC: from here on no RUN is accepted.
+  /// @return false = refused: the PLC is in RUN, or about to be
+  [[nodiscard]] bool retire() noexcept;
   /// @return false = refused: a cycle has not come back from the step in which it was stopped
   bool order_reset() noexcept;
 
@@ -92,6 +96,8 @@ class SoftPlc {
   [[nodiscard]] const std::string& name(std::size_t index) const noexcept { return cycles_[index].name; }
   [[nodiscard]] std::size_t priority(std::size_t index) const noexcept { return cycles_[index].priority; }
   [[nodiscard]] CycleStatus status(std::size_t index) const noexcept;
+  /// Of all scans since the last start of RUN.
+  [[nodiscard]] StartDelays start_delays(std::size_t index) const noexcept;
   /// Whether all cycles are in STOP and no RUN is ordered.
   [[nodiscard]] bool is_stopped() const noexcept;
   [[nodiscard]] bool alarm_lamp() const noexcept { return parts_.lamp.is_on(); }
@@ -108,11 +114,13 @@ class SoftPlc {
     Progress last = Progress::finished;             ///< of the thread that advances the cycle
     bool halt_pending = false;                      ///< told to enter its fault, and not there yet
     std::optional<std::chrono::nanoseconds> limit;  ///< of the scan under way
+    StartDelays start_delays;
   };
 
   SoftPlc(SoftPlcSetup setup, ScanScheduler scheduler, std::chrono::nanoseconds now);
   /// Under the lock: what has to be known before the step is carried out.
   void prepare(std::size_t index, const ScanStep& step) noexcept;
+  [[nodiscard]] bool is_stopped_locked() const noexcept;
   void stop_all(std::chrono::nanoseconds now, FaultCode others) noexcept;
   void tell_observer(std::size_t index, std::chrono::nanoseconds now) noexcept;
 
@@ -125,6 +133,7 @@ class SoftPlc {
   std::vector<Cycle> cycles_;
   std::uint64_t run_ = 0;
   bool run_is_ordered_ = false;
+  bool is_retired_ = false;
   bool holds_outputs_ = false;
 };
 

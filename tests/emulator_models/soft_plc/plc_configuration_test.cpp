@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
 #include <thread>
 
@@ -68,6 +69,19 @@ TEST(PlcConfiguration, each_mistake_is_refused_with_its_place_and_the_way_out) {
   EXPECT_EQ(refusal("[plc]\n").rfind("dir/plc.toml:1:1: a PLC has 1 to 32 cycles", 0), 0U);
 }
 
+TEST(PlcConfiguration, fixed_inputs_are_bytes_of_a_simulated_driver_and_no_more_than_its_inputs) {
+  const auto with = [](const std::string& kind, const std::string& values) {
+    return good + "[[driver]]\nname = \"d\"\nkind = \"" + kind +
+           "\"\nperiod_ms = 1\ninputs = { first_byte = 0, bytes = 2 }\nfixed_inputs = [" + values + "]\n";
+  };
+  EXPECT_EQ(refusal(with("simulated", "1, 255")), "taken");
+  EXPECT_EQ(refusal(with("simulated", "1, 2, 3")),
+            "dir/plc.toml:12:16: fixed_inputs has 3 bytes, but inputs only 2");
+  EXPECT_EQ(refusal(with("propulsion", "1")),
+            "dir/plc.toml:12:16: fixed_inputs belongs to kind \"simulated\"; leave it out");
+  EXPECT_NE(refusal(with("simulated", "256")).find("from 0 to 255"), std::string::npos);
+}
+
 TEST(PlcConfiguration,
      a_program_that_writes_a_word_of_another_cycle_is_refused_with_the_line_of_the_program) {
   const std::string two = good + "[[cycle]]\nname = \"b\"\nprogram = \"b.il\"\nperiod_ms = 1\n";
@@ -125,6 +139,26 @@ TEST(ConfiguredPlc, a_period_may_change_in_RUN_and_a_name_only_in_STOP) {
   EXPECT_EQ(rig.plc.plc()->name(0), "c");
   EXPECT_EQ(plc->gateway().submit({.cycle = 0, .items = {{.section = {0, 1}, .written = {}}}}).error(),
             GatewayError::closed);
+}
+
+// I2: whatever the threads do, a RUN that was accepted is carried out by the PLC that is there afterwards.
+TEST(ConfiguredPlc, a_RUN_that_comes_while_another_PLC_is_loaded_is_refused_or_prevents_it) {
+  Configured rig;
+  ASSERT_TRUE(rig.plc.reload(good));
+  for (int i = 0; i < 30; ++i) {
+    const auto old = rig.plc.plc();
+    std::atomic<bool> accepted{false};
+    std::thread orders{[&] { accepted = old->order_run(StartKind::cold); }};
+    const std::string name = i % 2 == 0 ? "\"c\"" : "\"a\"";
+    const bool loaded = rig.plc.reload(replaced(good, "\"a\"", name)).has_value();
+    orders.join();
+    ASSERT_NE(loaded, accepted) << "in turn " << i;
+    ASSERT_EQ(loaded, rig.plc.plc() != old);
+    if (!accepted) continue;
+    old->order_stop();
+    while (!old->is_stopped()) std::this_thread::yield();
+    ASSERT_TRUE(rig.plc.reload(replaced(good, "\"a\"", name)));
+  }
 }
 
 TEST(ConfiguredPlc, a_driver_of_an_unknown_kind_is_refused) {

@@ -1,6 +1,7 @@
 // The parts that cycles share, one by one: output gate, drivers, gateway.
 #include <gtest/gtest.h>
 
+#include "tests/emulator_models/soft_plc/counted_allocations.hpp"
 #include "tests/emulator_models/soft_plc/plc_rig.hpp"
 
 namespace emulator_models::soft_plc {
@@ -266,6 +267,36 @@ TEST(Gateway, a_request_that_was_given_up_is_not_carried_out) {
   EXPECT_EQ(served.seen_in_scan, 0U);
 }
 
+TEST(Gateway, a_write_of_one_bit_leaves_the_other_bits_alone) {
+  Served served;
+  GatewayRequest request = Served::write(64);
+  request.items[0].written = {std::byte{0xA5}};
+  const auto bit = [&](std::uint8_t index, std::uint8_t value) {
+    request.items.push_back({.section = {64, 0}, .written = {std::byte{value}}, .bit = index});
+  };
+  bit(1, 1);
+  bit(0, 0);
+  bit(7, 9);
+  request.items.push_back({.section = {64, 1}, .written = {}});
+  const auto ticket = served.plc->gateway().submit(request).value();
+  run_until(*served.plc, served.now, 5ms);
+  EXPECT_EQ(served.plc->gateway().take(ticket).value().read[4], std::vector<std::byte>{std::byte{0xA6}});
+}
+
+// I5
+TEST(Gateway, a_scan_that_serves_requests_takes_no_memory_and_gives_none_back) {
+  Served served;
+  GatewayRequest request = Served::write(64);
+  request.items.push_back({.section = {0, 200}, .written = {}});
+  std::vector<std::shared_ptr<Gateway::Ticket>> tickets;
+  for (int i = 0; i < 3; ++i) tickets.push_back(served.plc->gateway().submit(request).value());
+  const std::uint64_t before = heap_calls_count();
+  run_until(*served.plc, served.now, 25ms);
+  EXPECT_EQ(heap_calls_count(), before);
+  for (const auto& ticket : tickets)
+    EXPECT_EQ(served.plc->gateway().take(ticket).value().read[1].size(), 200U);
+}
+
 TEST(Gateway, what_cannot_be_served_is_refused_before_it_waits) {
   Served served;
   const auto refusal = [&](GatewayRequest request) {
@@ -280,6 +311,11 @@ TEST(Gateway, what_cannot_be_served_is_refused_before_it_waits) {
   GatewayRequest input = Served::write(0);
   input.items[0].area = Area::inputs;
   EXPECT_EQ(refusal(input), GatewayError::not_writable);
+  GatewayRequest bit = Served::write(0);
+  bit.items[0].bit = std::uint8_t{8};
+  EXPECT_EQ(refusal(bit), GatewayError::bad_bit);
+  bit.items[0] = {.section = {0, 1}, .written = {}, .bit = std::uint8_t{0}};
+  EXPECT_EQ(refusal(bit), GatewayError::bad_bit);
   served.plc->gateway().close();
   EXPECT_EQ(refusal(Served::read({0, 8})), GatewayError::closed);
 }

@@ -163,6 +163,20 @@ TEST(SoftPlc, two_cycles_that_write_the_same_output_or_send_the_same_word_are_re
       std::string::npos);
 }
 
+TEST(SoftPlc, one_that_is_retired_takes_no_RUN_and_one_in_RUN_cannot_be_retired) {
+  const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
+  nanoseconds now{0};
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  EXPECT_FALSE(plc->retire()) << "RUN is ordered";
+  run_until(*plc, now, 5ms);
+  plc->order_stop();
+  EXPECT_FALSE(plc->retire()) << "no scan has carried out the STOP";
+  run_until(*plc, now, 25ms);
+  EXPECT_TRUE(plc->retire());
+  EXPECT_TRUE(plc->retire());
+  EXPECT_FALSE(plc->order_run(StartKind::cold));
+}
+
 TEST(SoftPlc, a_new_period_counts_from_the_next_scan_on_in_RUN) {
   const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
   ASSERT_TRUE(plc->order_run(StartKind::cold));
@@ -246,6 +260,48 @@ TEST_P(Threads, orders_exchange_and_gateway_hold_under_real_threads) {
   EXPECT_FALSE(plc->gate().is_open());
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, Threads, testing::Values(PlcThreading::one, PlcThreading::per_cycle));
+
+// Periods of an hour: only the wake-up can be in time.
+TEST(PlcThreads, a_driver_brings_safe_outputs_to_the_field_at_once_after_STOP_and_at_the_end) {
+  for (const bool at_end : {false, true}) {
+    std::atomic<std::uint64_t> terminals{0};
+    std::atomic<int> exchanges{0};
+    class Driver final : public IoDriver {
+     public:
+      Driver(std::atomic<std::uint64_t>& shown, std::atomic<int>& count) : terminals_{shown}, count_{count} {}
+      bool exchange(const OutputGate::Frame& frame, OutputGate& gate,
+                    std::span<std::byte> /*inputs*/) noexcept override {
+        gate.write_through(frame, [this](const OutputGate::Outputs& outputs) { terminals_ = word(outputs); });
+        ++count_;
+        return true;
+      }
+
+     private:
+      std::atomic<std::uint64_t>& terminals_;
+      std::atomic<int>& count_;
+    };
+    auto setup = setup_of(one(cycle("a", 1ms, {}, 0, count_on_outputs)));
+    IoManager::Slot& slot = setup.drivers.emplace_back();
+    slot.config.period = 1h;
+    slot.config.late_after = 1h;
+    slot.driver = std::make_unique<Driver>(terminals, exchanges);
+    SteadyPlcClock clock;
+    const auto plc = SoftPlc::make(std::move(setup), clock.now()).value();
+    ASSERT_TRUE(plc->order_run(StartKind::cold));
+    // Outputs are there before the driver's first exchange, so that it shows them.
+    while (word(plc->gate().frame().outputs) == 0) static_cast<void>(plc->advance(clock.now()));
+    PlcThreads threads{*plc, clock, PlcThreading::one, false};
+    while (exchanges == 0) std::this_thread::yield();
+    EXPECT_GT(terminals, 0U);
+    if (at_end) {
+      threads.stop();
+      EXPECT_EQ(terminals, 0U);
+    } else {
+      plc->order_stop();
+      while (terminals != 0) std::this_thread::yield();
+    }
+  }
+}
 
 TEST(PlcThreads, the_watchdog_s_thread_stops_a_PLC_whose_cycle_hangs) {
   std::atomic<bool> released{false};

@@ -33,6 +33,7 @@ TEST(ScanTimes, show_the_latest_the_shortest_and_the_longest_scan) {
   EXPECT_EQ(times.now, 4ms);
   EXPECT_EQ(times.shortest, 2ms);
   EXPECT_EQ(times.longest, 9ms);
+  EXPECT_EQ(times.mean(), 5ms);
   EXPECT_EQ(times.scans_count, 4U);
 }
 

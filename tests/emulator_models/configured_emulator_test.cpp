@@ -1,0 +1,159 @@
+// plc-emulator --config as a process of its own: its start, its signals, its faults, its end.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "tests/emulator_models/emulator_process.hpp"
+#include "tests/protocol/fx/worked_examples.hpp"
+
+namespace emulator_models {
+namespace {
+
+using protocol::fx::examples::bytes;
+
+/// Sends a read of one word until it is not zero.
+void wait_until_not_zero(const SerialLine& line, const char* read) {
+  std::vector<std::byte> answer;
+  do {
+    line.send(bytes(read));
+    answer = line.receive(8);
+    ASSERT_EQ(answer.size(), 8U);
+  } while (answer == bytes("02 30 30 30 30 03 43 33"));
+}
+
+/// A folder with a configuration of two cycles; the second runs `program`.
+struct ConfiguredEmulator : testing::Test {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("ltsim-configured-" + std::to_string(::getpid()));
+  const std::string path = (folder / "plc.toml").string();
+
+  ConfiguredEmulator() {
+    std::filesystem::create_directory(folder);
+    write("good.il", "PROGRAM good\nVAR n AT %MW0 : INT; END_VAR\nLD n\nADD 1\nST n\nEND_PROGRAM\n");
+  }
+  ~ConfiguredEmulator() override { std::filesystem::remove_all(folder); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream{folder / name} << text; }
+  void configure(const std::string& program, const std::string& threads = "one", int period_ms = 10) const {
+    write("plc.toml", "[plc]\nthreads = \"" + threads +
+                          "\"\n[[cycle]]\nname = \"fast\"\nprogram = \"good.il\"\nperiod_ms = 1\n"
+                          "[[cycle]]\nname = \"slow\"\nprogram = \"" +
+                          program + "\"\nperiod_ms = " + std::to_string(period_ms) + "\n");
+  }
+};
+
+TEST_F(ConfiguredEmulator, runs_for_the_time_asked_for_and_prints_the_starts_of_each_cycle) {
+  configure("good.il");
+  EmulatorProcess emulator{{"--config", path, "--seconds", "1"}};
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_NE(emulator.printed().find("\nRUN\n"), std::string::npos) << emulator.printed();
+  EXPECT_NE(emulator.printed().find("cycle fast, every 1 ms: "), std::string::npos);
+  EXPECT_NE(emulator.printed().find("cycle slow, every 10 ms: "), std::string::npos);
+  EXPECT_NE(emulator.printed().find("start late by"), std::string::npos);
+}
+
+TEST_F(ConfiguredEmulator, sigterm_and_sigint_end_it_cleanly) {
+  configure("good.il", "per-cycle");
+  for (const int signal : {SIGTERM, SIGINT}) {
+    EmulatorProcess emulator{{"--config", path}};
+    ASSERT_TRUE(emulator.wait_for_text("RUN\n"));
+    emulator.send_signal(signal);
+    EXPECT_EQ(emulator.wait_for_exit(), 0);
+  }
+}
+
+// I20, in real time.
+TEST_F(ConfiguredEmulator, an_endless_loop_is_stopped_by_the_watchdog_and_told) {
+  write("loop.il", "PROGRAM loop\nagain:\nJMP again\nEND_PROGRAM\n");
+  for (const char* const threads : {"one", "per-cycle"}) {
+    configure("loop.il", threads);
+    EmulatorProcess emulator{{"--config", path}};
+    EXPECT_TRUE(emulator.wait_for_text("alarm lamp on, outputs are safe"));
+    EXPECT_TRUE(emulator.wait_for_text("fault in cycle slow: watchdog (1)")) << emulator.printed();
+    emulator.send_signal(SIGTERM);
+    EXPECT_EQ(emulator.wait_for_exit(), 0);
+    EXPECT_NE(emulator.printed().find("fault in cycle fast: stopped (4)"), std::string::npos);
+  }
+}
+
+TEST_F(ConfiguredEmulator, a_run_time_fault_is_told_with_file_line_and_column_and_the_switch_starts_anew) {
+  // Divides by zero half a second after its start.
+  write("divides.il",
+        "PROGRAM divides\nVAR n : INT; t : TON; END_VAR\nCAL t(IN := TRUE, PT := T#500ms)\n"
+        "LD t.Q\nJMPCN done\nLD 1\nDIV n\nST n\ndone:\nEND_PROGRAM\n");
+  configure("divides.il");
+  EmulatorProcess emulator{{"--config", path}};
+  EXPECT_EQ(emulator.wait_for_line((folder / "divides.il").string() + ":"), "7:1: division by zero");
+  emulator.send_signal(SIGUSR2);
+  EXPECT_TRUE(emulator.wait_for_text("alarm lamp off")) << emulator.printed();
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST_F(ConfiguredEmulator, sighup_takes_a_period_in_RUN_and_refuses_a_bad_file_with_its_place) {
+  configure("good.il");
+  EmulatorProcess emulator{{"--config", path}};
+  ASSERT_TRUE(emulator.wait_for_text("RUN\n"));
+  write("plc.toml", "[plc]\nthread = 1\n");
+  emulator.send_signal(SIGHUP);
+  EXPECT_EQ(emulator.wait_for_line("plc-emulator: refused, the configuration of before goes on: " + path)
+                .substr(0, 6),
+            ":2:1: ");
+  configure("good.il", "one", 20);
+  emulator.send_signal(SIGHUP);
+  EXPECT_TRUE(emulator.wait_for_text("loaded again; counts from the next scan"));
+  write("other.il", "PROGRAM other\nEND_PROGRAM\n");
+  configure("other.il", "one", 20);
+  emulator.send_signal(SIGHUP);
+  EXPECT_TRUE(emulator.wait_for_text("changes the program of cycle slow, which cannot be done in RUN"));
+  emulator.send_signal(SIGUSR2);
+  EXPECT_TRUE(emulator.wait_for_text("STOP\n"));
+  emulator.send_signal(SIGHUP);
+  EXPECT_TRUE(emulator.wait_for_text("loaded again: a new PLC, in STOP"));
+  emulator.send_signal(SIGUSR1);
+  EXPECT_TRUE(emulator.wait_for_text("cycle slow, every 20 ms: 0 scans begun"));
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST_F(ConfiguredEmulator, the_programming_port_shows_words_of_the_first_cycle) {
+  configure("good.il");
+  EmulatorProcess emulator{{"--config", path, "--pty"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  wait_until_not_zero(line, "02 30 31 30 30 30 30 32 03 35 36");  // D0 counts scans
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST_F(ConfiguredEmulator, the_filling_station_of_the_example_fills_bottles) {
+  EmulatorProcess emulator{{"--config", EXAMPLE_CONFIGURATION, "--pty"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  wait_until_not_zero(line, "02 30 31 30 31 32 30 32 03 35 39");  // D9 counts them
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_EQ(emulator.printed().find("fault"), std::string::npos) << emulator.printed();
+}
+
+TEST_F(ConfiguredEmulator, bad_usage_and_bad_files_are_2) {
+  configure("none.il");
+  const std::vector<std::vector<std::string>> uses{{"--config", path},
+                                                   {"--config", (folder / "none.toml").string()},
+                                                   {"--config", path, "--model", "FX2N"},
+                                                   {"--config", path, "--watch"},
+                                                   {"--config", path, "--seconds", "0"},
+                                                   {"--pty", "--seconds", "3"}};
+  for (const auto& use : uses) {
+    EmulatorProcess emulator{use};
+    EXPECT_EQ(emulator.wait_for_exit(), 2) << emulator.printed();
+    EXPECT_NE(emulator.printed(), "");
+  }
+}
+
+}  // namespace
+}  // namespace emulator_models
