@@ -14,10 +14,17 @@ std::uint64_t OutputGate::open(bool hold_outputs) noexcept {
 bool OutputGate::commit(std::uint64_t run, std::span<const std::byte> mask,
                         std::span<const std::byte> outputs) noexcept {
   const std::lock_guard lock{mutex_};
+#ifdef LTSIM_MUTANT_COMMIT_OF_ANY_RUN
+  run = epoch_;
+#endif
   if (!open_ || run != epoch_) {
     ++dropped_commits_count_;
     return false;
   }
+#ifdef LTSIM_MUTANT_COMMIT_TESTED_BEFORE  // what was tested is not what is written
+  mutex_.unlock();
+  mutex_.lock();
+#endif
   for (std::size_t i = 0; i < mask.size(); ++i)
     outputs_[i] = (outputs_[i] & ~mask[i]) | (outputs[i] & mask[i]);
   return true;

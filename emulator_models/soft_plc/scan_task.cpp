@@ -75,6 +75,9 @@ ScanStep ScanTask::next(nanoseconds now, Progress last) noexcept {
   if (halt_code_) return enter_fault(*std::exchange(halt_code_, std::nullopt));
   if (action_ == ScanAction::wait) return now_ < period_.due() ? step(ScanAction::wait) : begin_scan();
   if (!fault_ && last == Progress::failed) return enter_fault(FaultCode::program_failed);
+#ifdef LTSIM_MUTANT_WATCHDOG_FED_BY_SLICES  // whatever comes to its end earns more time
+  watchdog_.begin_scan(now_);
+#endif
   if (watchdog_bites(now_)) return enter_fault(FaultCode::watchdog);
   return last == Progress::unfinished ? step(action_) : after(action_);
 }
@@ -112,6 +115,9 @@ ScanStep ScanTask::begin_scan() noexcept {
 }
 
 ScanStep ScanTask::change_mode() noexcept {
+#ifdef LTSIM_MUTANT_MODE_SAMPLED  // a STOP that no scan has seen is forgotten
+  stop_was_ordered_ = false;
+#endif
   const bool was_stopped = std::exchange(stop_was_ordered_, false);
   const RunMode before = std::exchange(mode_, ordered_mode_);
   if (mode_ == RunMode::run && (before == RunMode::stop || was_stopped)) {
@@ -139,6 +145,9 @@ ScanStep ScanTask::after(ScanAction finished) noexcept {
     case ScanAction::write_safe_outputs:
       return step(ScanAction::read_inputs);
     case ScanAction::read_inputs:
+#ifdef LTSIM_MUTANT_MODE_READ_TWICE  // the mode that is ordered meanwhile counts for the scan under way
+      if (ordered_mode_ == RunMode::run) return step(ScanAction::execute);
+#endif
       if (mode_ == RunMode::stop) return step(ScanAction::refresh_output_image);
       return step(config_.exchanges_with_cycles ? ScanAction::read_from_cycles : ScanAction::execute);
     case ScanAction::read_from_cycles:

@@ -206,6 +206,13 @@ nanoseconds SoftPlc::supervise(nanoseconds now) noexcept {
     if (cycle.limit && *cycle.limit >= now && scheduler_.cycle(i).is_in_scan())
       next = std::min(next, *cycle.limit + nanoseconds{1});
   }
+#ifdef LTSIM_MUTANT_WATCHDOG_FED_BY_DRIVERS  // a driver that works earns the scan more time
+  has_expired = has_expired && parts_.io.state(0, now).age > cycles_[0].config.watchdog_limit;
+#endif
+#ifdef LTSIM_MUTANT_WATCHDOG_OF_ANY_RUN  // the run that has expired need not be the one that is stopped
+  mutex_.unlock();
+  mutex_.lock();
+#endif
   if (has_expired) {
     stop_all(now, FaultCode::other_cycle);
   } else if (io_failed && run_is_ordered_) {

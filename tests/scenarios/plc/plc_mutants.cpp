@@ -1,0 +1,91 @@
+// The soft PLC with one rule taken away: compiled once for each, with the sources that it is a mutant of.
+
+#include "sim_clock/scenario/shape.hpp"
+#include "tests/scenarios/plc/plc_rig.hpp"
+#include "tests/scenarios/plc/plc_scenes.hpp"
+
+namespace {
+
+void run(ltsim::World& world, bool corrected, const scenarios::PlcScene& scene) {
+  if (corrected) {
+    scenarios::run_unmutated(world, scene);
+  } else {
+    scenarios::soft_plc::run_scene(world, scene);
+  }
+}
+
+}  // namespace
+
+#if defined(LTSIM_MUTANT_MODE_READ_TWICE)
+SHAPE("plc/o20-mode-read-twice",
+      {.finding = "I25", .depth = 2, .tasks_count = 6, .cure = "the mode of a scan is set once"},
+      "a scan looks at the mode that is ordered again after it has read its inputs") {
+  run(world, corrected, scenarios::troubled_scene);
+}
+
+#elif defined(LTSIM_MUTANT_MODE_SAMPLED)
+SHAPE("plc/stop-between-two-scans",
+      {.finding = "I25",
+       .depth = 1,
+       .tasks_count = 6,
+       .cure = "that STOP was ordered is kept until a scan has seen it"},
+      "STOP and RUN between two looks at the mode are not noticed") {
+  run(world, corrected, scenarios::troubled_scene);
+}
+
+#elif defined(LTSIM_MUTANT_COMMIT_OF_ANY_RUN)
+SHAPE("plc/o21-commit-of-any-run",
+      {.finding = "I19", .depth = 3, .tasks_count = 6, .cure = "a commit names its run"},
+      "the gate lets through what a scan of an older run commits") {
+  run(world, corrected, scenarios::troubled_scene);
+}
+
+#elif defined(LTSIM_MUTANT_COMMIT_TESTED_BEFORE)
+SHAPE("plc/o21-commit-tested-before",
+      {.finding = "I19",
+       .depth = 2,
+       .tasks_count = 6,
+       .cure = "one critical section for the test and the outputs"},
+      "the gate tests a commit, and writes its outputs after a stop") {
+  run(world, corrected, scenarios::troubled_scene);
+}
+
+#elif defined(LTSIM_MUTANT_WATCHDOG_FED_BY_DRIVERS)
+SHAPE(
+    "plc/o17-watchdog-fed-by-drivers",
+    {.finding = "I20", .depth = 1, .tasks_count = 6, .cure = "only the end of a whole scan earns more time"},
+    "a scan hangs, and the driver's thread goes on feeding the watchdog") {
+  run(world, corrected, scenarios::hanging_scene);
+}
+
+#elif defined(LTSIM_MUTANT_WATCHDOG_FED_BY_SLICES)
+SHAPE(
+    "plc/watchdog-fed-by-slices",
+    {.finding = "I22", .depth = 1, .tasks_count = 6, .cure = "only the end of a whole scan earns more time"},
+    "each slice of an endless program feeds the watchdog") {
+  run(world, corrected, scenarios::troubled_scene);
+}
+
+#elif defined(LTSIM_MUTANT_WATCHDOG_OF_ANY_RUN)
+SHAPE("plc/o18-watchdog-against-restart",
+      {.finding = "I21",
+       .depth = 3,
+       .tasks_count = 6,
+       .cure = "one critical section for the look and the stop"},
+      "the watchdog finds one run over its time and stops the next") {
+  run(world, corrected, scenarios::one_thread_scene);
+}
+
+#elif defined(LTSIM_MUTANT_CATCH_UP_WITHOUT_BOUND)
+SHAPE("plc/o19-catch-up-without-bound",
+      {.finding = "I26",
+       .depth = 1,
+       .tasks_count = 6,
+       .cure = "at most 100 scans are made up for, the rest is lost and counted"},
+      "each scan that was missed is made up for") {
+  run(world, corrected, scenarios::catch_up_scene);
+}
+
+#else
+#error "which mutant?"
+#endif

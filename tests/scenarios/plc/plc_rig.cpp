@@ -1,0 +1,135 @@
+#include "tests/scenarios/plc/plc_rig.hpp"
+
+#include <memory>
+#include <thread>
+
+#include "emulator_models/soft_plc/plc_threads.hpp"
+#include "tests/scenarios/plc/plc_clocks.hpp"
+#include "tests/scenarios/plc/watched_body.hpp"
+
+namespace scenarios::soft_plc {
+namespace {
+
+using namespace std::chrono_literals;
+using emulator_models::soft_plc::IoManager;
+using emulator_models::soft_plc::OverrunRule;
+using emulator_models::soft_plc::PlcClock;
+using emulator_models::soft_plc::PlcThreading;
+using emulator_models::soft_plc::PlcThreads;
+using emulator_models::soft_plc::ScanPeriod;
+using emulator_models::soft_plc::SoftPlc;
+using emulator_models::soft_plc::SoftPlcSetup;
+using emulator_models::soft_plc::StartKind;
+
+std::unique_ptr<PlcClock> make_clock(PlcScene::Clock kind) {
+  if (kind == PlcScene::Clock::wall) return std::make_unique<WallPlcClock>();
+  if (kind == PlcScene::Clock::milliseconds_32) return std::make_unique<MillisecondPlcClock>();
+  return std::make_unique<emulator_models::soft_plc::SteadyPlcClock>();
+}
+
+WatchedBody::Hang choose_hang(ltsim::World& world, const PlcScene& scene) {
+  if (!scene.scans_may_hang) return {};
+  const auto trouble = static_cast<WatchedBody::Trouble>(world.choose("hang", 3));
+  return {trouble, 1 + world.choose("hangs-in-scan", 4), scene.watchdog_limit + scene.watchdog_limit / 6};
+}
+
+/// One exchange of the first 16 has the trouble.
+std::function<SharedMemoryDriver::Trouble()> choose_trouble(ltsim::World& world, const PlcScene& scene) {
+  using Trouble = SharedMemoryDriver::Trouble;
+  if (!scene.driver_may_fail) return [] { return Trouble::none; };
+  const auto trouble = static_cast<Trouble>(world.choose("driver", 3));
+  return [trouble, number = world.choose("driver-exchange", 16)]() mutable {
+    return number-- == 0 ? trouble : Trouble::none;
+  };
+}
+
+SoftPlcSetup make_setup(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
+  SoftPlcSetup setup;
+  setup.slice_intervals = {0ns};
+  const WatchedBody::Hang hang = choose_hang(world, scene);
+  for (std::size_t i = 0; i < PlcMonitor::cycles_count; ++i) {
+    setup.cycles.push_back(
+        {.name = i == 0 ? "fast" : "slow",
+         .config = {.scan = {.period = scene.period * static_cast<int>(1 + i),
+                             .overrun = scene.catches_up ? OverrunRule::catch_up : OverrunRule::skip,
+                             .watchdog_limit = scene.watchdog_limit}},
+         .sends = {},
+         .body =
+             std::make_unique<WatchedBody>(monitor, i, scene.inputs, i == 0 ? hang : WatchedBody::Hang{})});
+  }
+  IoManager::Slot& card = setup.drivers.emplace_back();
+  card.config.name = "card";
+  card.config.inputs = {0, 8};
+  card.config.period = scene.period / 2;
+  card.driver = std::make_unique<SharedMemoryDriver>(monitor, scene.driver, choose_trouble(world, scene));
+  return setup;
+}
+
+void stop(SoftPlc& plc, PlcMonitor& monitor) {
+  plc.order_stop();
+  monitor.stop_ordered();
+}
+
+void start(SoftPlc& plc, PlcMonitor& monitor) {
+  if (plc.order_run(StartKind::cold)) monitor.run_ordered();
+}
+
+enum class Order : std::uint8_t { none, stop, restart };
+
+/// The operator, who resets and restarts a PLC that shows a fault.
+void operate(ltsim::World& world, const PlcScene& scene, SoftPlc& plc, PlcMonitor& monitor) {
+  start(plc, monitor);
+  for (unsigned i = 0; i < scene.orders; ++i) {
+    std::this_thread::sleep_for((1 + world.choose("pause", 4)) * scene.period * 3 / 4);
+    const bool is_faulty = plc.alarm_lamp();
+    const auto order = static_cast<Order>(is_faulty ? 2 : world.choose("order", 3));
+    if (order == Order::none) continue;
+    stop(plc, monitor);
+    if (is_faulty) static_cast<void>(plc.order_reset());
+    if (order == Order::restart) start(plc, monitor);
+  }
+  std::this_thread::sleep_for(2 * scene.period);
+  plc.stop_now();
+  monitor.stopped();
+}
+
+void run_plc(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
+  const auto inner = make_clock(scene.clock);
+  const auto clock = std::make_unique<WatchedPlcClock>(monitor, *inner);
+  const auto plc = SoftPlc::make(make_setup(world, scene, monitor), clock->now()).value();
+  monitor.set_lamp([&plc] { return plc->alarm_lamp(); });
+  PlcThreads threads{
+      *plc, *clock, scene.threading == PlcScene::Threading::one ? PlcThreading::one : PlcThreading::per_cycle,
+      false};
+  operate(world, scene, *plc, monitor);
+  monitor.set_lamp({});  // the watchdog ends, and the outputs are safe
+  threads.stop();
+}
+
+void move_inputs(const PlcScene& scene) {
+  const Card card{card_segment};
+  for (std::uint64_t value = 1; value <= 6; ++value) {
+    card->inputs = value;
+    std::this_thread::sleep_for(scene.period / 2);
+  }
+}
+
+}  // namespace
+
+void run_scene(ltsim::World& world, const PlcScene& scene) {
+  world.name_region(card_segment, 0, 8, "card.inputs");
+  world.name_region(card_segment, 8, 8, "card.outputs");
+  PlcMonitor monitor{world,
+                     {.periods = {scene.period, 2 * scene.period},
+                      .watchdog_limit = scene.watchdog_limit,
+                      .burst = scene.catches_up ? static_cast<std::uint64_t>(ScanPeriod::catch_up_max) : 0,
+                      .only = scene.only}};
+  if (scene.stalls > 0) world.process("plc").may_stall(scene.stalls);
+  if (scene.clock_steps > 0) world.grant(ltsim::FaultKind::clock_step, scene.clock_steps);
+  world.whenever_idle([&] { monitor.idle(); });
+  world.process("plc").start("main", [&] { run_plc(world, scene, monitor); });
+  world.process("field").start("main", [&] { move_inputs(scene); });
+  world.run();
+}
+
+}  // namespace scenarios::soft_plc
