@@ -73,9 +73,23 @@ void WatchedMachine::scan() {
   }
 }
 
+void WatchedMachine::put_tool_table_right() {
+  constexpr Device tool_in_spindle{DeviceKind::d, 221};
+  constexpr Device exchange{DeviceKind::d, 223};
+  constexpr std::uint16_t first_pocket = 230;
+  const machine_tool::ToolChanger& changer = plant_.changer();
+  emulator_.with_memory([&](DeviceMemory& memory) {
+    if (memory.get(exchange) == 0) return;
+    memory.set(tool_in_spindle, changer.tool_in_spindle());
+    for (std::uint16_t i = 0; i < machine_tool::ToolChanger::pockets_count; ++i)
+      memory.set({DeviceKind::d, static_cast<std::uint16_t>(first_pocket + i)},
+                 changer.tool_in_pocket(i + 1U));
+    memory.set(exchange, 0);
+  });
+}
+
 void WatchedMachine::look(SteadyTime now) {
   const ltsim::GhostScope ghost;
-  ++scans_count_;
   scanned_time_ += std::min<std::chrono::nanoseconds>(now - last_look_, period_);
   last_look_ = now;
   MachineToolRules::Broken broken;

@@ -34,7 +34,11 @@ class WatchedMachine {
     return emulator_;
   }
   [[nodiscard]] emulator_models::MachineToolPlant& plant() noexcept { return plant_; }
-  [[nodiscard]] std::uint64_t scans_count() const noexcept { return scans_count_; }
+  /// As FxPlc's.
+  void observe_with(emulator_models::FxPlcObserver* observer) noexcept { plc_.observe_with(observer); }
+  /// What the operator does after an exchange of tools that was cut short: looks where they are, and writes that
+  /// into the PLC. Between two scans.
+  void put_tool_table_right();
 
  private:
   void look(emulator_models::SteadyTime now);
@@ -52,7 +56,6 @@ class WatchedMachine {
   /// scanned, and a world may let a scan come late.
   emulator_models::SteadyTime scanned_time_{};
   emulator_models::SteadyTime last_look_{};
-  std::uint64_t scans_count_ = 0;
   std::atomic<bool> stop_requested_{false};
 };
 

@@ -1,0 +1,218 @@
+// machine-day: the machine tool for a simulated day, scanned each millisecond, one part program after the other, a
+// random failure each hour; every interlock looked at after every scan, the history in an archive.
+//
+// One execution of the simulated world in its default order: nobody is held up. Other orders are the matter of the
+// scenarios machine/*.
+//
+// Exit codes: 0 no violation; 1 a violation, or another failure of the execution; 2 bad usage, or no archive.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <thread>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "emulator_models/archive/archive_drain.hpp"
+#include "emulator_models/fx_recorder.hpp"
+#include "emulator_models/programs/machine_tool_program.hpp"
+#include "kernel_mocks/nc_parser.hpp"
+#include "kernel_mocks/part_program_runner.hpp"
+#include "sim_clock/check/signal_guard.hpp"
+#include "sim_clock/explore/strategy.hpp"
+#include "tests/scenarios/machine/local_port.hpp"
+#include "tests/scenarios/machine/watched_machine.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using emulator_models::MachineToolFailure;
+using kernel_mocks::RunOutcome;
+using protocol::fx::Device;
+using protocol::fx::DeviceKind;
+
+constexpr auto scan_period = 1ms;
+
+constexpr const char* part_program = R"(%
+N10 T3 M6
+N20 S1500 M3
+N30 M8
+N40 G1 X40 Y10 F1200
+N50 G2 X60 Y30 I20
+N60 M9
+N70 M5
+N80 T8 M6
+N90 S900 M13
+N100 G1 X10 F600
+N110 G4 P0.5
+N120 M19
+N130 M9
+N140 T0 M6
+N150 M11
+N160 M10
+N170 G0 X0 Y0
+N180 M30
+%)";
+
+/// The default at each choice: nobody is held up, no time passes while somebody can run.
+class DefaultOrder final : public ltsim::Strategy {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "default-order"; }
+  void begin_execution(std::uint64_t /*seed*/) noexcept override {}
+  [[nodiscard]] std::size_t choose_task(const ltsim::TaskChoice& /*choice*/) noexcept override { return 0; }
+  [[nodiscard]] ltsim::SlowMoment slow_moment(const ltsim::SlowMomentChoice& /*choice*/) noexcept override {
+    return {};
+  }
+  [[nodiscard]] std::size_t strike(ltsim::FaultKind /*kind*/, std::size_t /*count*/) noexcept override {
+    return 0;
+  }
+  [[nodiscard]] std::size_t answer(std::size_t /*count*/) noexcept override { return 0; }
+};
+
+struct Arguments {
+  double hours = 24;
+  std::uint64_t seed = 1;
+  std::string archive;
+  std::int64_t rows_max = 200'000;
+};
+
+struct Tally {
+  std::uint64_t programs_ended = 0;
+  std::uint64_t programs_failed = 0;
+  std::uint64_t failures = 0;
+};
+
+/// One part program after the other; after one that fails the operator puts things right and begins anew.
+void run_kernel(scenarios::WatchedMachine& machine, scenarios::FunctionMonitor& functions, Tally& tally,
+                const std::atomic<bool>& over) {
+  static const kernel_mocks::Program program = kernel_mocks::parse_program(part_program).value();
+  scenarios::LocalPort port{machine.port()};
+  kernel_mocks::FxDriver driver{port, {}};
+  kernel_mocks::LogicTask logic_task{
+      driver, {.poll_interval = 50ms, .fin_timeout = 30s, .ready_timeout = 6s}, &functions};
+  kernel_mocks::PartProgramRunner runner{logic_task, {}};
+  while (!over.load()) {
+    functions.program_begins();
+    if (runner.run(program).outcome == RunOutcome::ended) {
+      ++tally.programs_ended;
+      continue;
+    }
+    ++tally.programs_failed;
+    std::this_thread::sleep_for(20s);
+    machine.put_tool_table_right();
+    (void)logic_task.set_plc_running(true);
+  }
+}
+
+/// One failure in each hour, at a random moment, for half a minute to five.
+void break_down(emulator_models::MachineToolPlant& plant, std::uint64_t seed, Tally& tally,
+                const std::atomic<bool>& over) {
+  std::mt19937_64 random{seed};
+  const auto sleep = [&](std::chrono::seconds duration) {
+    for (; duration > 0s && !over.load(); duration -= 1s) std::this_thread::sleep_for(1s);
+  };
+  while (!over.load()) {
+    const std::chrono::seconds begin{random() % 3000};
+    const std::chrono::seconds length{30 + random() % 270};
+    sleep(begin);
+    if (over.load()) return;
+    const auto failure =
+        static_cast<MachineToolFailure>(random() % emulator_models::machine_tool_failures_count);
+    plant.set_failure(failure, true);
+    ++tally.failures;
+    sleep(length);
+    plant.set_failure(failure, false);
+    sleep(3600s - begin - length);
+  }
+}
+
+int run(const Arguments& arguments) {
+  using namespace emulator_models;
+  const protocol::fx::Model model = protocol::fx::Model::fx3u;
+  auto database =
+      archive::ArchiveDatabase::open({.file = arguments.archive,
+                                      .rows_max = arguments.rows_max,
+                                      .power_up_wall_clock = ltsim::World::wall_clock_epoch,
+                                      .signal_names = {"spindle clockwise", "flood pump", "alarm"}});
+  if (!database) {
+    fmt::print(stderr, "machine-day: {}\n", database.error().message);
+    return 2;
+  }
+  const ltsim::SignalGuard signals;
+  ltsim::World world;
+  DefaultOrder order;
+  world.reset(order, nullptr);
+  world.set_points_max(std::uint64_t{1} << 40U);
+
+  const soft_plc::IlProgram program = scenarios::compiled_for_fx3u(machine_tool_program());
+  scenarios::FunctionMonitor functions{world};
+  scenarios::WatchedMachine machine{world, program, functions, scan_period};
+  FxRecorder recorder{
+      {.signals = {{DeviceKind::y, 0}, {DeviceKind::y, 3}, {DeviceKind::m, 121}}}, model, SteadyTime{}};
+  machine.observe_with(&recorder);
+  archive::ArchiveDrain drain{std::move(*database), {&recorder.ring()}, {}};
+  const auto length =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>{arguments.hours * 3600});
+  std::atomic<bool> over{false};
+  Tally tally;
+  const auto begin = std::chrono::steady_clock::now();
+
+  world.process("kernel").start("main", [&] { run_kernel(machine, functions, tally, over); });
+  world.process("emulator").start("scan", [&] { machine.scan(); });
+  world.process("shop").start("failures", [&] { break_down(machine.plant(), arguments.seed, tally, over); });
+  world.process("shop").start("archive", [&] {
+    for (auto passed = 0s; passed < length; passed += 1s) {
+      std::this_thread::sleep_for(1s);
+      const ltsim::GhostScope outside;
+      drain.drain();
+    }
+    over.store(true);
+    // The kernel ends its program first.
+    std::this_thread::sleep_for(120s);
+    machine.request_stop();
+  });
+  world.run();
+  const auto outcome = world.scheduler().outcome();
+  recorder.finish(SteadyTime{world.now()});
+  world.end_execution();
+  drain.finish();
+
+  const auto counts = drain.counts();
+  const std::chrono::duration<double> real = std::chrono::steady_clock::now() - begin;
+  fmt::print("{:.2f} h simulated in {:.1f} s ({:.0f} scans a second, {} scheduling points)\n",
+             arguments.hours, real.count(), static_cast<double>(length / scan_period) / real.count(),
+             world.scheduler().points());
+  fmt::print("{} part programs to their end, {} cut short; {} failures of the machine\n",
+             tally.programs_ended, tally.programs_failed, tally.failures);
+  fmt::print("archive {}: {} rows written, {} lost; the newest {} are kept\n", arguments.archive,
+             counts.stored_count, counts.lost_count, arguments.rows_max);
+  if (!outcome.passed()) {
+    fmt::print("{}: {} at {}\n", to_string(outcome.kind), outcome.message,
+               std::chrono::duration_cast<std::chrono::milliseconds>(world.now()));
+    return 1;
+  }
+  fmt::print("no rule was broken\n");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{
+      "The machine tool for a simulated day: part programs, a failure each hour, every interlock watched."};
+  app.add_option("--archive", arguments.archive, "SQLite file of the history; its folder must be there")
+      ->required();
+  app.add_option("--hours", arguments.hours, "simulated time")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  app.add_option("--seed", arguments.seed, "all failures follow from it")->capture_default_str();
+  app.add_option("--rows", arguments.rows_max, "rows that the archive keeps")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return run(arguments);
+}
