@@ -36,8 +36,9 @@ using protocol::fx::DeviceKind;
 
 constexpr auto scan_period = 1ms;
 
-constexpr const char* part_program = R"(%
-N10 T3 M6
+/// One workpiece. A part program has so many that it lasts an hour.
+constexpr unsigned workpieces_in_program = 100;
+constexpr const char* workpiece = R"(N10 T3 M6
 N20 S1500 M3
 N30 M8
 N40 G1 X40 Y10 F1200
@@ -54,8 +55,7 @@ N140 T0 M6
 N150 M11
 N160 M10
 N170 G0 X0 Y0
-N180 M30
-%)";
+)";
 
 /// The default at each choice: nobody is held up, no time passes while somebody can run.
 class DefaultOrder final : public ltsim::Strategy {
@@ -79,52 +79,76 @@ struct Arguments {
   std::int64_t rows_max = 200'000;
 };
 
-struct Tally {
-  std::uint64_t programs_ended = 0;
-  std::uint64_t programs_failed = 0;
+struct Shift {
+  std::atomic<bool> over{false};
+  std::atomic<bool> broken{false};  ///< a failure is there
+  std::uint64_t workpieces = 0;
+  std::uint64_t programs_cut_short = 0;
   std::uint64_t failures = 0;
 };
 
-/// One part program after the other; after one that fails the operator puts things right and begins anew.
-void run_kernel(scenarios::WatchedMachine& machine, scenarios::FunctionMonitor& functions, Tally& tally,
-                const std::atomic<bool>& over) {
-  static const kernel_mocks::Program program = kernel_mocks::parse_program(part_program).value();
+kernel_mocks::Program part_program() {
+  std::string text = "%\n";
+  for (unsigned i = 0; i < workpieces_in_program; ++i) text += workpiece;
+  return kernel_mocks::parse_program(text + "M30\n%").value();
+}
+
+/// Counts the workpieces.
+class WorkpieceCounter final : public kernel_mocks::PartProgramObserver {
+ public:
+  void moved(const kernel_mocks::Block& block, kernel_mocks::MotionKind /*kind*/,
+             std::chrono::nanoseconds /*duration*/, bool reached) noexcept override {
+    if (reached && block.number == last_motion) ++count_;
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+
+ private:
+  static constexpr std::uint32_t last_motion = 170;
+  std::uint64_t count_ = 0;
+};
+
+/// One part program after the other; after one that fails the operator has the machine repaired, puts things right
+/// and begins anew.
+void run_kernel(scenarios::WatchedMachine& machine, scenarios::FunctionMonitor& functions, Shift& shift) {
+  const kernel_mocks::Program program = part_program();
   scenarios::LocalPort port{machine.port()};
   kernel_mocks::FxDriver driver{port, {}};
   kernel_mocks::LogicTask logic_task{
-      driver, {.poll_interval = 50ms, .fin_timeout = 30s, .ready_timeout = 6s}, &functions};
-  kernel_mocks::PartProgramRunner runner{logic_task, {}};
-  while (!over.load()) {
+      driver, {.poll_interval = 50ms, .fin_timeout = 30s, .ready_timeout = 6s}, &functions, &shift.over};
+  WorkpieceCounter workpieces;
+  kernel_mocks::PartProgramRunner runner{logic_task, {}, &workpieces};
+  while (!shift.over.load()) {
     functions.program_begins();
-    if (runner.run(program).outcome == RunOutcome::ended) {
-      ++tally.programs_ended;
-      continue;
-    }
-    ++tally.programs_failed;
-    std::this_thread::sleep_for(20s);
+    const bool ended = runner.run(program).outcome == RunOutcome::ended;
+    shift.workpieces = workpieces.count();
+    if (ended) continue;
+    ++shift.programs_cut_short;
+    do std::this_thread::sleep_for(20s);
+    while (shift.broken.load() && !shift.over.load());
     machine.put_tool_table_right();
     (void)logic_task.set_plc_running(true);
   }
 }
 
 /// One failure in each hour, at a random moment, for half a minute to five.
-void break_down(emulator_models::MachineToolPlant& plant, std::uint64_t seed, Tally& tally,
-                const std::atomic<bool>& over) {
+void break_down(emulator_models::MachineToolPlant& plant, std::uint64_t seed, Shift& shift) {
   std::mt19937_64 random{seed};
   const auto sleep = [&](std::chrono::seconds duration) {
-    for (; duration > 0s && !over.load(); duration -= 1s) std::this_thread::sleep_for(1s);
+    for (; duration > 0s && !shift.over.load(); duration -= 1s) std::this_thread::sleep_for(1s);
   };
-  while (!over.load()) {
+  while (!shift.over.load()) {
     const std::chrono::seconds begin{random() % 3000};
     const std::chrono::seconds length{30 + random() % 270};
     sleep(begin);
-    if (over.load()) return;
+    if (shift.over.load()) return;
     const auto failure =
         static_cast<MachineToolFailure>(random() % emulator_models::machine_tool_failures_count);
     plant.set_failure(failure, true);
-    ++tally.failures;
+    shift.broken.store(true);
+    ++shift.failures;
     sleep(length);
     plant.set_failure(failure, false);
+    shift.broken.store(false);
     sleep(3600s - begin - length);
   }
 }
@@ -156,22 +180,21 @@ int run(const Arguments& arguments) {
   archive::ArchiveDrain drain{std::move(*database), {&recorder.ring()}, {}};
   const auto length =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>{arguments.hours * 3600});
-  std::atomic<bool> over{false};
-  Tally tally;
+  Shift shift;
   const auto begin = std::chrono::steady_clock::now();
 
-  world.process("kernel").start("main", [&] { run_kernel(machine, functions, tally, over); });
+  world.process("kernel").start("main", [&] { run_kernel(machine, functions, shift); });
   world.process("emulator").start("scan", [&] { machine.scan(); });
-  world.process("shop").start("failures", [&] { break_down(machine.plant(), arguments.seed, tally, over); });
+  world.process("shop").start("failures", [&] { break_down(machine.plant(), arguments.seed, shift); });
   world.process("shop").start("archive", [&] {
     for (auto passed = 0s; passed < length; passed += 1s) {
       std::this_thread::sleep_for(1s);
       const ltsim::GhostScope outside;
       drain.drain();
     }
-    over.store(true);
-    // The kernel ends its program first.
-    std::this_thread::sleep_for(120s);
+    shift.over.store(true);
+    // The kernel resets the machine first.
+    std::this_thread::sleep_for(60s);
     machine.request_stop();
   });
   world.run();
@@ -185,8 +208,8 @@ int run(const Arguments& arguments) {
   fmt::print("{:.2f} h simulated in {:.1f} s ({:.0f} scans a second, {} scheduling points)\n",
              arguments.hours, real.count(), static_cast<double>(length / scan_period) / real.count(),
              world.scheduler().points());
-  fmt::print("{} part programs to their end, {} cut short; {} failures of the machine\n",
-             tally.programs_ended, tally.programs_failed, tally.failures);
+  fmt::print("{} workpieces; {} failures of the machine, {} part programs cut short\n", shift.workpieces,
+             shift.failures, shift.programs_cut_short);
   fmt::print("archive {}: {} rows written, {} lost; the newest {} are kept\n", arguments.archive,
              counts.stored_count, counts.lost_count, arguments.rows_max);
   if (!outcome.passed()) {

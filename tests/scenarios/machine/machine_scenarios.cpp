@@ -28,17 +28,19 @@ SCENARIO("machine/shift",
 
 SCENARIO("machine/fin-wait-removed",
          "the kernel raises the next strobe while FIN may still be that of the last one") {
-  scenarios::run_shift(world, whole_program(), scenarios::PortService::between_scans,
-                       scenarios::FinWait::none);
+  scenarios::run_shift(
+      world, whole_program(),
+      {.service = scenarios::PortService::between_scans, .fin_wait = scenarios::FinWait::none});
 }
 
 SCENARIO("machine/fin-wait-removed-corrected", "the next strobe rises only when FIN is low") {
-  scenarios::run_shift(world, whole_program(), scenarios::PortService::between_scans);
+  scenarios::run_shift(world, whole_program(), {.service = scenarios::PortService::between_scans});
 }
 
 namespace {
 
-/// One scenario for each rule: the program without its lines. The same shift as above, nothing points at the rule.
+/// One scenario for each rule: the program without its lines. The same shift as above; nothing in it points at
+/// the rule.
 constexpr std::size_t marked_rules_count = emulator_models::machine_tool_rules_count - 1;
 
 const std::string& rule(std::size_t index) {
@@ -51,7 +53,7 @@ template <std::size_t index>
 void run_without_rule(ltsim::World& world) {
   static const IlProgram program = scenarios::compiled_for_fx3u(
       emulator_models::without_rule(emulator_models::machine_tool_program(), rule(index)));
-  scenarios::run_shift(world, program);
+  scenarios::run_shift(world, program, {.only_rule = rule(index)});
 }
 
 template <std::size_t index>

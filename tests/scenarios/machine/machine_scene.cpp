@@ -137,20 +137,21 @@ void lay_hands_on(ltsim::World& world, MachineToolPlant& plant, const std::atomi
 
 }  // namespace
 
-void run_shift(ltsim::World& world, const emulator_models::soft_plc::IlProgram& program, PortService service,
-               FinWait fin_wait) {
+void run_shift(ltsim::World& world, const emulator_models::soft_plc::IlProgram& program,
+               const ShiftSetup& setup) {
   PaperOptions paper;
   paper.on_time_out = PaperOptions::OnTimeOut::wait_for_ever;
   name_regions(world, "handoff", paper);
   world.set_points_max(points_max);
   FunctionMonitor functions{world};
-  WatchedMachine machine{world, program, functions, scan_period, service};
+  WatchedMachine machine{world, program, functions, scan_period, setup.service};
+  machine.judge_only(setup.only_rule);
   protocol::SlaveSharedMemoryWrapper slave{"handoff", paper};
   emulator_models::EmulatorHandler handler{slave, machine.port()};
   std::atomic<bool> done{false};
 
   world.process("kernel").start("main", [&] {
-    run_kernel(world, paper, functions, fin_wait);
+    run_kernel(world, paper, functions, setup.fin_wait);
     done.store(true);
     handler.request_stop();
     machine.request_stop();

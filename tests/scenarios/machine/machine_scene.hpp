@@ -2,6 +2,8 @@
 // fails; on the whole kernel and the whole emulator, over the published handoff.
 #pragma once
 
+#include <string_view>
+
 #include "emulator_models/soft_plc/il_program.hpp"
 #include "sim_clock/world/world.hpp"
 #include "tests/scenarios/machine/watched_machine.hpp"
@@ -10,9 +12,16 @@ namespace scenarios {
 
 enum class FinWait { until_low, none };
 
-/// @param program   of the PLC, compiled for an FX3U
-/// @param fin_wait  none: the kernel takes FIN for low as soon as it has let its strobes fall
+struct ShiftSetup {
+  PortService service = PortService::at_scan_boundary;
+  /// none: the kernel takes FIN for low as soon as it has let its strobes fall.
+  FinWait fin_wait = FinWait::until_low;
+  /// The interlock to judge by; empty: all.
+  std::string_view only_rule{};
+};
+
+/// @param program  of the PLC, compiled for an FX3U
 void run_shift(ltsim::World& world, const emulator_models::soft_plc::IlProgram& program,
-               PortService service = PortService::at_scan_boundary, FinWait fin_wait = FinWait::until_low);
+               const ShiftSetup& setup = {});
 
 }  // namespace scenarios

@@ -99,7 +99,8 @@ void WatchedMachine::look(SteadyTime now) {
     functions_.scanned(memory);
   });
   for (std::size_t i = 0; i < broken.size() && broken.any(); ++i) {
-    if (broken.test(i)) world_.violated(std::string{name_of(static_cast<MachineToolRule>(i))});
+    const std::string_view rule = name_of(static_cast<MachineToolRule>(i));
+    if (broken.test(i) && (only_.empty() || rule == only_)) world_.violated(std::string{rule});
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <string>
+#include <string_view>
 
 #include "emulator_models/fx_plc.hpp"
 #include "emulator_models/plants/machine_tool_rules.hpp"
@@ -34,6 +36,9 @@ class WatchedMachine {
     return emulator_;
   }
   [[nodiscard]] emulator_models::MachineToolPlant& plant() noexcept { return plant_; }
+  /// Judges by this rule alone: one mistake can break several, and which of them first is a matter of chance.
+  void judge_only(std::string_view rule) { only_ = rule; }
+
   /// As FxPlc's.
   void observe_with(emulator_models::FxPlcObserver* observer) noexcept { plc_.observe_with(observer); }
   /// What the operator does after an exchange of tools that was cut short: looks where they are, and writes that
@@ -52,6 +57,7 @@ class WatchedMachine {
   emulator_models::MachineToolPlant plant_;
   emulator_models::FxPlc plc_;
   emulator_models::MachineToolRules rules_;
+  std::string only_;  ///< empty: all
   /// Time as the rules see it: it goes on by one period a scan at most. The program can only react when it is
   /// scanned, and a world may let a scan come late.
   emulator_models::SteadyTime scanned_time_{};

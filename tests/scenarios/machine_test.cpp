@@ -1,0 +1,68 @@
+// The machine tool in the world: whole, it breaks no rule; without one of them the default search names that rule.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "emulator_models/programs/interlock_rules.hpp"
+#include "emulator_models/programs/machine_tool_program.hpp"
+#include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/swarm_strategy.hpp"
+
+namespace {
+
+constexpr std::uint64_t executions_until_found_max = 10'000;
+constexpr std::uint64_t silent_executions = 150;
+
+ltsim::World& world() {
+  static ltsim::World only;
+  return only;
+}
+
+ltsim::ExploreReport explore(const std::string& scenario, std::uint64_t executions) {
+  ltsim::SwarmStrategy strategy;
+  ltsim::ExploreOptions options;
+  options.executions_max = executions;
+  options.minimize_seconds = std::chrono::seconds{0};
+  return ltsim::Explorer{world()}.explore(*ltsim::find_scenario(scenario), strategy, options);
+}
+
+struct WholeMachine : ::testing::TestWithParam<const char*> {};
+
+TEST_P(WholeMachine, breaks_no_rule) {
+  const auto report = explore(GetParam(), silent_executions);
+  ASSERT_TRUE(report.failures.empty()) << report.failures.front().outcome.message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Machine, WholeMachine,
+                         ::testing::Values("machine/shift", "machine/fin-wait-removed-corrected"),
+                         [](const auto& tried) { return tried.index == 0 ? "shift" : "between_scans"; });
+
+struct MachineWithout : ::testing::TestWithParam<std::string> {};
+
+TEST_P(MachineWithout, is_found_by_the_name_of_the_rule) {
+  const auto report = explore("machine/without-" + GetParam(), executions_until_found_max);
+  ASSERT_FALSE(report.failures.empty());
+  EXPECT_EQ(report.failures.front().outcome.message, GetParam());
+  RecordProperty("executions", std::to_string(report.executions));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Machine, MachineWithout,
+    ::testing::ValuesIn(emulator_models::rules_of(emulator_models::machine_tool_program())),
+    [](const auto& tried) {
+      std::string name = tried.param;
+      for (char& letter : name) letter = letter == '-' ? '_' : letter;
+      return name;
+    });
+
+TEST(Machine, a_kernel_that_does_not_wait_for_fin_to_be_low_is_found) {
+  const auto report = explore("machine/fin-wait-removed", executions_until_found_max);
+  ASSERT_FALSE(report.failures.empty());
+  EXPECT_TRUE(report.failures.front().outcome.message.starts_with("I27: "))
+      << report.failures.front().outcome.message;
+}
+
+}  // namespace
