@@ -31,7 +31,6 @@ void PlcMonitor::initialised(std::size_t index) {
   cycle.run = runs_count_;
   cycle.is_initialised = cycle.must_be_first = cycle.stop_seen = true;
   cycle.is_in_scan = false;
-  cycle.scan_start.reset();
 }
 
 void PlcMonitor::slice_begins(std::size_t index, Nanoseconds scan_start, bool first_scan) {
@@ -50,12 +49,12 @@ void PlcMonitor::begin_scan(Cycle& cycle, std::size_t index, Nanoseconds scan_st
   require(cycle.stop_seen || scan_start <= stop_ordered_at_,
           "I25: a scan that began after STOP and RUN were ordered goes on as if there had been no STOP");
   require(first_scan == cycle.must_be_first, "I25: not exactly the first scan of a run is told so");
-  const bool was_over_time = cycle.scan_start && may_be_over_time(cycle);
+  const bool was_over_time = !cycle.must_be_first && may_be_over_time(cycle);
   cycle.must_be_first = false;
   cycle.is_in_scan = true;
   cycle.slices_in_scan = 0;
   cycle.first_slice = world_.now();
-  cycle.scan_start = scan_start;
+  cycle.began_after = scan_start;
   was_over_time_ = was_over_time_ || was_over_time || may_be_over_time(cycle);
   cycle.input.reset();
   cycle.starts.push_back(scan_start);
@@ -87,9 +86,11 @@ void PlcMonitor::scan_computed(std::size_t index) {
 void PlcMonitor::gave_up(std::size_t index) {
   Cycle& cycle = cycles_[index];
   world_.note([&] { return fmt::format("cycle {} has made the outputs safe", index); });
-  cycle.is_in_scan = cycle.is_initialised = false;
-  last_dead_run_ = std::max(last_dead_run_, cycle.run);
+  was_over_time_ = was_over_time_ || may_be_over_time(cycle);
   look_at_lamp();
+  cycle.is_in_scan = cycle.is_initialised = false;
+  cycle.began_after = world_.now();
+  last_dead_run_ = std::max(last_dead_run_, cycle.run);
 }
 
 void PlcMonitor::terminals_written(const std::array<std::uint32_t, cycles_count>& words) {
@@ -129,9 +130,7 @@ void PlcMonitor::look_at_lamp() {
 }
 
 bool PlcMonitor::may_be_over_time(const Cycle& cycle) const noexcept {
-  // Of a scan that has not come to its program yet nobody outside knows when it began.
-  if (cycle.run != runs_count_ || !cycle.scan_start) return true;
-  return world_.now() - *cycle.scan_start > options_.watchdog_limit;
+  return world_.now() - cycle.began_after > options_.watchdog_limit;
 }
 
 void PlcMonitor::idle() {

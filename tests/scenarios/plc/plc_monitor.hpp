@@ -80,7 +80,8 @@ class PlcMonitor {
     bool stop_seen = true;  ///< initialised since the latest STOP order
     unsigned slices_in_scan = 0;
     Nanoseconds first_slice{0};
-    std::optional<Nanoseconds> scan_start;   ///< of the latest scan of this run
+    /// The scan that is watched has not begun earlier: the latest that is known of, or one after it was given up.
+    Nanoseconds began_after{0};
     std::optional<std::uint64_t> input;      ///< read in this scan
     std::vector<std::uint64_t> computed_in;  ///< runs of scan 1, 2 ...
     std::vector<Nanoseconds> starts;

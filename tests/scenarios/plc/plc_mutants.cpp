@@ -73,7 +73,7 @@ SHAPE("plc/o18-watchdog-against-restart",
        .tasks_count = 6,
        .cure = "one critical section for the look and the stop"},
       "the watchdog finds one run over its time and stops the next") {
-  run(world, corrected, scenarios::one_thread_scene);
+  run(world, corrected, scenarios::restarted_scene);
 }
 
 #elif defined(LTSIM_MUTANT_CATCH_UP_WITHOUT_BOUND)

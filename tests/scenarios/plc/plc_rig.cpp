@@ -28,9 +28,12 @@ std::unique_ptr<PlcClock> make_clock(PlcScene::Clock kind) {
 }
 
 WatchedBody::Hang choose_hang(ltsim::World& world, const PlcScene& scene) {
-  if (!scene.scans_may_hang) return {};
-  const auto trouble = static_cast<WatchedBody::Trouble>(world.choose("hang", 3));
-  return {trouble, 1 + world.choose("hangs-in-scan", 4), scene.watchdog_limit + scene.watchdog_limit / 6};
+  using Trouble = WatchedBody::Trouble;
+  const auto duration = scene.watchdog_limit + scene.watchdog_limit / 6;
+  if (scene.hang == PlcScene::Hang::never) return {};
+  if (scene.hang == PlcScene::Hang::second_scan) return {Trouble::hangs_in_slice, 2, duration};
+  const auto trouble = static_cast<Trouble>(world.choose("hang", 3));
+  return {trouble, 1 + world.choose("hangs-in-scan", 4), duration};
 }
 
 /// One exchange of the first 16 has the trouble.
@@ -74,19 +77,30 @@ void start(SoftPlc& plc, PlcMonitor& monitor) {
   if (plc.order_run(StartKind::cold)) monitor.run_ordered();
 }
 
-enum class Order : std::uint8_t { none, stop, restart };
+void acknowledge(SoftPlc& plc, PlcMonitor& monitor) {
+  stop(plc, monitor);
+  static_cast<void>(plc.order_reset());
+  start(plc, monitor);
+}
 
-/// The operator, who resets and restarts a PLC that shows a fault.
+void give_order(ltsim::World& world, SoftPlc& plc, PlcMonitor& monitor) {
+  const std::size_t order = world.choose("order", 3);
+  if (order == 0) return;
+  stop(plc, monitor);
+  if (order == 1) start(plc, monitor);
+}
+
+/// The operator, who resets and starts again a PLC that shows a fault.
 void operate(ltsim::World& world, const PlcScene& scene, SoftPlc& plc, PlcMonitor& monitor) {
+  const bool gives_orders = scene.panel == PlcScene::Operator::gives_orders;
   start(plc, monitor);
   for (unsigned i = 0; i < scene.orders; ++i) {
-    std::this_thread::sleep_for((1 + world.choose("pause", 4)) * scene.period * 3 / 4);
-    const bool is_faulty = plc.alarm_lamp();
-    const auto order = static_cast<Order>(is_faulty ? 2 : world.choose("order", 3));
-    if (order == Order::none) continue;
-    stop(plc, monitor);
-    if (is_faulty) static_cast<void>(plc.order_reset());
-    if (order == Order::restart) start(plc, monitor);
+    std::this_thread::sleep_for((1 + (gives_orders ? world.choose("pause", 4) : 0)) * scene.period * 3 / 4);
+    if (plc.alarm_lamp()) {
+      acknowledge(plc, monitor);
+    } else if (gives_orders) {
+      give_order(world, plc, monitor);
+    }
   }
   std::this_thread::sleep_for(2 * scene.period);
   plc.stop_now();

@@ -42,7 +42,7 @@ SHAPE("plc/o14-wall-clock",
 SHAPE("plc/o15-millisecond-wrap",
       {.finding = "I20", .depth = 1, .tasks_count = 6, .cure = "the PLC counts nanoseconds in 64 bits"},
       "the PLC's clock is a count of milliseconds that wraps") {
-  PlcScene scene{.scans_may_hang = true, .only = "I20"};
+  PlcScene scene{.hang = PlcScene::Hang::may, .only = "I20"};
   if (!corrected) scene.clock = PlcScene::Clock::milliseconds_32;
   run_unmutated(world, scene);
 }
@@ -54,6 +54,7 @@ SHAPE("plc/o21-past-the-gate",
        .cure = "the driver's last write passes the gate once more"},
       "a driver writes a frame that a stop has overtaken") {
   PlcScene scene = scenarios::troubled_scene;
+  scene.only = "I19";
   if (!corrected) scene.driver = PlcScene::Driver::past_gate;
   run_unmutated(world, scene);
 }

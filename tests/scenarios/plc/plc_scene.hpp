@@ -27,18 +27,29 @@ struct PlcScene {
     word_by_word,  ///< mutant: the terminals of each cycle pass the gate by themselves
   };
 
+  enum class Operator : std::uint8_t {
+    gives_orders,  ///< RUN, then some at choice
+    acknowledges,  ///< RUN, and after a fault, as soon as it is seen, reset and RUN
+  };
+  enum class Hang : std::uint8_t {
+    never,
+    may,          ///< one scan of the first cycle, within a slice or slice by slice
+    second_scan,  ///< of the first cycle, within a slice
+  };
+
   Threading threading = Threading::per_cycle;
   Clock clock = Clock::steady;
   Inputs inputs = Inputs::latched;
   Driver driver = Driver::through_gate;
   std::chrono::milliseconds period{10};  ///< of the first cycle; the second one has twice that
   std::chrono::milliseconds watchdog_limit{30};
-  bool catches_up = false;      ///< instead of skipping the starts that were missed
-  bool scans_may_hang = false;  ///< one scan, within a slice or slice by slice
+  bool catches_up = false;  ///< instead of skipping the starts that were missed
+  Hang hang = Hang::never;
+  Operator panel = Operator::gives_orders;
   bool driver_may_fail = false;
   unsigned stalls = 0;         ///< of the whole PLC
   unsigned clock_steps = 0;    ///< of the wall clock
-  unsigned orders = 3;         ///< after the first RUN
+  unsigned orders = 3;         ///< after the first RUN; or looks at the lamp
   std::string_view only = {};  ///< the one invariant that is judged, where one mistake breaks several
 };
 

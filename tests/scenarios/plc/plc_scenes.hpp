@@ -5,10 +5,17 @@
 
 namespace scenarios {
 
-inline constexpr PlcScene troubled_scene{.scans_may_hang = true, .driver_may_fail = true};
+inline constexpr PlcScene troubled_scene{.hang = PlcScene::Hang::may, .driver_may_fail = true};
 inline constexpr PlcScene one_thread_scene{
-    .threading = PlcScene::Threading::one, .scans_may_hang = true, .driver_may_fail = true};
-inline constexpr PlcScene hanging_scene{.scans_may_hang = true, .only = "I20"};
+    .threading = PlcScene::Threading::one, .hang = PlcScene::Hang::may, .driver_may_fail = true};
+inline constexpr PlcScene hanging_scene{.hang = PlcScene::Hang::may, .only = "I20"};
+inline constexpr PlcScene restarted_scene{.threading = PlcScene::Threading::one,
+                                          .period = std::chrono::milliseconds{20},
+                                          .watchdog_limit = std::chrono::milliseconds{45},
+                                          .hang = PlcScene::Hang::second_scan,
+                                          .panel = PlcScene::Operator::acknowledges,
+                                          .orders = 6,
+                                          .only = "I21"};
 inline constexpr PlcScene catch_up_scene{
     .period = std::chrono::milliseconds{4}, .catches_up = true, .stalls = 1, .orders = 2};
 
