@@ -42,8 +42,8 @@ CREATE VIEW faults AS
          v1 / 1e6 AS scan_ms, CASE WHEN v2 > 0 THEN v2 || ':' || v3 END AS place
   FROM timed_event WHERE kind = 3;
 CREATE VIEW port_writes AS
-  SELECT id, power_up, seconds, wall_clock, cycle AS port, code AS area, v0 AS address, v1 AS bytes, printf('%016x', v2)
-         AS first_bytes
+  SELECT id, power_up, seconds, wall_clock, cycle AS port, code AS area, v0 AS address,
+         CASE WHEN v3 > 0 THEN v3 - 1 END AS bit, v1 AS bytes, printf('%016x', v2) AS first_bytes
   FROM timed_event WHERE kind = 6;
 CREATE VIEW signal_changes AS
   SELECT e.id, e.power_up, seconds, wall_clock, cycle, scan_number, coalesce(name, 'signal ' || code) AS signal,

@@ -19,7 +19,9 @@ enum class EventKind : std::uint8_t {
   fault = 3,    ///< code: FaultCode; values: ScanAction, scan time in ns, line and column of the program
   fault_cleared = 4,  ///< code: FaultCode
   mode_change = 5,    ///< code: RunMode
-  port_write = 6,     ///< code: memory area as the port numbers it; values: address, bytes, the first 8 bytes
+  port_write =
+      6,  ///< code: memory area as the port numbers it; values: address, bytes, the first 8 bytes, and
+          ///< of a write of one bit within a byte its number + 1
   signal_change = 7,  ///< code: number of the signal; values: before, after
   records_lost = 8,   ///< values: records that found no room, counted in the place where they are missing
 };

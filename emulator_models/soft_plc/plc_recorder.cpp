@@ -70,14 +70,14 @@ void PlcRecorder::gateway_writes(std::size_t index, const GatewayItem& item) noe
   Cycle& cycle = *cycles_[index];
   std::uint64_t first_bytes = 0;
   std::memcpy(&first_bytes, item.written.data(), std::min(item.written.size(), sizeof first_bytes));
-  (void)cycle.ring.push(
-      {.kind = EventKind::port_write,
-       .cycle = static_cast<std::uint8_t>(index),
-       .code = static_cast<std::uint16_t>(item.area),
-       .time_ns = cycle.scan.time.count(),
-       .scan_number = cycle.scan.scan_number,
-       .values = {static_cast<std::int64_t>(item.section.first),
-                  static_cast<std::int64_t>(item.written.size()), static_cast<std::int64_t>(first_bytes)}});
+  (void)cycle.ring.push({.kind = EventKind::port_write,
+                         .cycle = static_cast<std::uint8_t>(index),
+                         .code = static_cast<std::uint16_t>(item.area),
+                         .time_ns = cycle.scan.time.count(),
+                         .scan_number = cycle.scan.scan_number,
+                         .values = {static_cast<std::int64_t>(item.section.first),
+                                    static_cast<std::int64_t>(item.written.size()),
+                                    static_cast<std::int64_t>(first_bytes), item.bit ? *item.bit + 1 : 0}});
 }
 
 void PlcRecorder::finish(nanoseconds now) noexcept {

@@ -116,14 +116,16 @@ TEST_F(PlcRecorderTest, writes_of_the_gateway_are_recorded_with_their_cycle_addr
   const auto ticket = plc->gateway().submit(
       {.cycle = 1,
        .items = {{.area = Area::memory, .section = {0, 4}, .written = {}},
-                 {.area = Area::memory, .section = {0, 0}, .written = {std::byte{2}, std::byte{1}}}}});
+                 {.area = Area::memory, .section = {0, 0}, .written = {std::byte{2}, std::byte{1}}},
+                 {.area = Area::memory, .section = {9, 0}, .written = {std::byte{1}}, .bit = 5}}});
   ASSERT_TRUE(ticket);
   run_until(*plc, now, 30ms);
   const auto writes = taken(1, EventKind::port_write);
-  ASSERT_EQ(writes.size(), 1U);
+  ASSERT_EQ(writes.size(), 2U);
   EXPECT_EQ(writes[0].code, static_cast<std::uint16_t>(Area::memory));
   EXPECT_EQ(writes[0].values, (std::array<std::int64_t, 5>{0, 2, 0x0102}));
   EXPECT_EQ(writes[0].scan_number, 2U);
+  EXPECT_EQ(writes[1].values, (std::array<std::int64_t, 5>{9, 1, 1, 6}));
   EXPECT_EQ(taken(1, EventKind::port_write).size() + taken(0, EventKind::port_write).size(), 0U);
 }
 
