@@ -10,7 +10,8 @@ bool is_same(const ConfiguredDriver& a, const ConfiguredDriver& b) {
   return a.kind == b.kind && a.config.name == b.config.name && a.config.inputs == b.config.inputs &&
          a.config.period == b.config.period && a.config.late_after == b.config.late_after &&
          a.config.failures_max == b.config.failures_max &&
-         a.config.stale_is_fault == b.config.stale_is_fault && a.config.stale_bit == b.config.stale_bit;
+         a.config.stale_is_fault == b.config.stale_is_fault && a.config.stale_bit == b.config.stale_bit &&
+         a.fixed_inputs == b.fixed_inputs;
 }
 
 }  // namespace

@@ -43,6 +43,16 @@ TEST(ConfigurationTransfer, a_damaged_or_short_text_is_never_loaded) {
   EXPECT_TRUE(wire.loaded.empty());
 }
 
+// I3
+TEST(ConfigurationTransfer, a_new_begin_drops_what_has_come_before) {
+  Wire wire;
+  ASSERT_TRUE(wire.transfer.serve(Begin{9, sum_of_123456789}));
+  ASSERT_TRUE(wire.transfer.serve(Chunk{0, "12"}));
+  ASSERT_TRUE(wire.transfer.serve(Begin{9, sum_of_123456789}));
+  ASSERT_TRUE(wire.transfer.serve(Chunk{0, "123456789"}));
+  EXPECT_TRUE(wire.transfer.serve(Commit{}));
+}
+
 TEST(ConfigurationTransfer, chunks_out_of_order_doubled_or_too_long_are_refused) {
   Wire wire;
   EXPECT_FALSE(wire.transfer.serve(Chunk{0, "1"})) << "no begin";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <thread>
 
@@ -90,6 +91,68 @@ TEST(PlcConfiguration,
             "dir/plc.toml:5:11: dir/a.il:5:1: writes a word that cycle b sends; only its owner may write it");
 }
 
+const std::string cycle_b = "[[cycle]]\nname = \"b\"\nprogram = \"b.il\"\nperiod_ms = 1\n";
+std::string driver(const std::string& name, const std::string& keys) {
+  std::string text{"[[driver]]\nname = \""};
+  text += name;
+  text += "\"\nkind = \"x\"\nperiod_ms = 1\n";
+  return text += keys;
+}
+
+TEST(PlcConfiguration, names_are_unique_among_cycles_and_among_drivers) {
+  EXPECT_EQ(refusal(good + replaced(cycle_b, "\"b\"", "\"a\"")),
+            "dir/plc.toml:8:8: there is a cycle a already; names are unique");
+  EXPECT_EQ(refusal(good + driver("d", {}) + driver("d", {})),
+            "dir/plc.toml:12:8: there is a driver d already; names are unique");
+  EXPECT_EQ(refusal(good + driver("a", {})), "taken");
+}
+
+TEST(PlcConfiguration, words_and_inputs_have_one_owner_and_lie_within_their_area) {
+  const std::string sends = "sends = { first_word = 100, words = 2 }\n";
+  EXPECT_EQ(
+      refusal(good + sends + cycle_b + replaced(sends, "100", "101")),
+      "dir/plc.toml:12:9: cycle a sends some of these words; each word has one owner, move one of them");
+  EXPECT_EQ(refusal(good + sends + cycle_b + replaced(sends, "100", "102")), "taken");
+  EXPECT_EQ(refusal(good + "sends = { first_word = 8191, words = 2 }\n"),
+            "dir/plc.toml:7:9: sends ends beyond the area, which has 8192 words");
+  const std::string inputs = "inputs = { first_byte = 4, bytes = 2 }\n";
+  EXPECT_EQ(refusal(good + driver("d", inputs) + driver("e", replaced(inputs, "4", "5"))),
+            "dir/plc.toml:16:10: driver d brings some of these inputs; move one of them");
+  EXPECT_EQ(refusal(good + driver("d", inputs) + driver("e", replaced(inputs, "4", "6"))), "taken");
+  EXPECT_NE(refusal(good + driver("d", "stale_bit = \"%QX0.0\"\n")).find("stale_bit must be an input"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + driver("d", "stale_bit = \"%IX256.0\"\n")).find("stale_bit must be an input"),
+            std::string::npos);
+}
+
+TEST(PlcConfiguration, a_program_that_sets_a_bit_of_a_word_of_another_cycle_is_refused_too) {
+  const auto reader = [](const std::string& path) -> std::optional<std::string> {
+    return path == "dir/b.il" ? "PROGRAM p\nVAR w AT %MX20.3 : BOOL; END_VAR\nLD TRUE\nS w\nEND_PROGRAM\n"
+                              : program;
+  };
+  const auto parsed = parse_configuration(good + "sends = { first_word = 10, words = 1 }\n" + cycle_b,
+                                          "dir/plc.toml", reader);
+  ASSERT_FALSE(parsed);
+  EXPECT_NE(parsed.error().find("dir/b.il:4:1: writes a word that cycle a sends"), std::string::npos);
+}
+
+TEST(PlcConfiguration, all_that_has_a_bound_is_refused_beyond_it) {
+  const auto reader = [](const std::string&) -> std::optional<std::string> {
+    return "PROGRAM p\nVAR i AT %IX256.0 : BOOL; q AT %QX0.0 : BOOL; END_VAR\nLD i\nST q\nEND_PROGRAM\n";
+  };
+  EXPECT_NE(parse_configuration(good, "dir/plc.toml", reader).error().find("uses addresses beyond %IB255"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + std::string(configuration_bytes_max, '#')).find("longer than 1048576 bytes"),
+            std::string::npos);
+  std::string drivers;
+  for (int i = 0; i < 17; ++i) drivers += driver(std::to_string(i), {});
+  EXPECT_NE(refusal(good + drivers).find("more than 16 drivers"), std::string::npos);
+  std::string signals = "[archive]\nsignals = [";
+  for (int i = 0; i < 1025; ++i) signals += "\"%QX0.0\", ";
+  EXPECT_NE(refusal(good + signals + "]\n").find("more than 1024 addresses"), std::string::npos);
+  EXPECT_EQ(refusal(good + "priority = 1\n"), "dir/plc.toml:7:12: priority must be an integer from 0 to 0");
+}
+
 TEST(PlcConfiguration, no_cut_of_a_good_file_does_harm) {
   for (std::size_t length = 0; length < good.size(); ++length)
     static_cast<void>(parse_configuration(good.substr(0, length), "dir/plc.toml", read_source));
@@ -159,6 +222,70 @@ TEST(ConfiguredPlc, a_RUN_that_comes_while_another_PLC_is_loaded_is_refused_or_p
     while (!old->is_stopped()) std::this_thread::yield();
     ASSERT_TRUE(rig.plc.reload(replaced(good, "\"a\"", name)));
   }
+}
+
+TEST(ConfiguredPlc, each_change_that_needs_STOP_is_named) {
+  const auto change = [](const std::string& from, const std::string& to) {
+    return change_that_needs_stop(parse_configuration(from, "dir/plc.toml", read_source).value(),
+                                  parse_configuration(to, "dir/plc.toml", read_source).value());
+  };
+  EXPECT_EQ(change(good, replaced(good, "= 1", "= 2") + "watchdog_ms = 20\noverrun = \"stop\"\n"), "");
+  EXPECT_EQ(change(good, replaced(good, "per-cycle", "one")), "threads or realtime");
+  EXPECT_EQ(change(good, replaced(good, "[plc]\n", "[plc]\nrealtime = true\n")), "threads or realtime");
+  const std::string slices = replaced(good, "[plc]\n", "[plc]\nslice_intervals_ms = [0, 5]\n");
+  EXPECT_EQ(change(good, slices), "slice_intervals_ms");
+  EXPECT_EQ(change(slices, slices + "priority = 1\n"), "the priority of cycle a");
+  EXPECT_EQ(change(good, good + cycle_b), "the number of cycles");
+  EXPECT_EQ(change(good, good + "sends = { first_word = 8, words = 1 }\n"), "what cycle a sends");
+  EXPECT_EQ(change(good, replaced(good, "[plc]\n", "[plc]\noutputs_in_stop = \"hold\"\n")),
+            "outputs_in_stop");
+  EXPECT_EQ(change(good + driver("d", {}), good + driver("d", "late_ms = 7\n")), "the drivers");
+  auto other = parse_configuration(good, "dir/plc.toml", read_source).value();
+  other.cycles[0].source += ' ';
+  EXPECT_EQ(change_that_needs_stop(parse_configuration(good, "dir/plc.toml", read_source).value(), other),
+            "the program of cycle a");
+}
+
+TEST(ConfiguredPlc, each_setting_of_a_driver_is_one_of_them) {
+  const auto with = [](const std::string& keys) {
+    return parse_configuration(good + driver("d", keys), "dir/plc.toml", read_source).value();
+  };
+  const auto plain = with({});
+  EXPECT_EQ(change_that_needs_stop(plain, plain), "");
+  for (const char* const keys : {"late_ms = 7\n", "failures_max = 7\n", "on_stale = \"fault\"\n",
+                                 "stale_bit = \"%IX9.0\"\n", "inputs = { first_byte = 0, bytes = 1 }\n"})
+    EXPECT_EQ(change_that_needs_stop(plain, with(keys)), "the drivers") << keys;
+  auto fixed = plain;
+  fixed.drivers[0].fixed_inputs = {std::byte{1}};
+  EXPECT_EQ(change_that_needs_stop(plain, fixed), "the drivers");
+}
+
+// I2: RUN comes while the drivers of the next PLC are made; in RUN none are made.
+TEST(ConfiguredPlc, a_RUN_that_comes_in_the_middle_of_a_load_prevents_it) {
+  class Silent final : public IoDriver {
+    bool exchange(const OutputGate::Frame&, OutputGate&, std::span<std::byte>) noexcept override {
+      return true;
+    }
+  };
+  SteadyPlcClock clock;
+  std::function<void()> during;
+  int made_count = 0;
+  ConfiguredPlc configured{"dir/plc.toml", read_source,
+                           [&](const ConfiguredDriver&) {
+                             ++made_count;
+                             if (during) during();
+                             return std::make_unique<Silent>();
+                           },
+                           clock};
+  ASSERT_TRUE(configured.reload(good));
+  const auto plc = configured.plc();
+  during = [&] { ASSERT_TRUE(plc->order_run(StartKind::cold)); };
+  const auto refused = configured.reload(good + driver("d", {}));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().find("changes the drivers, which cannot be done in RUN"), std::string::npos);
+  EXPECT_EQ(configured.plc(), plc);
+  EXPECT_FALSE(configured.reload(good + driver("d", {})));
+  EXPECT_EQ(made_count, 1) << "a field has one driver at a time";
 }
 
 TEST(ConfiguredPlc, a_driver_of_an_unknown_kind_is_refused) {

@@ -113,6 +113,13 @@ TEST(IoManager, inputs_are_stale_after_so_many_failures_in_a_row_and_good_again_
   EXPECT_EQ(field.io->state(0, 4ms).stale_count, 1U);
 }
 
+TEST(IoManager, failures_count_in_a_row_only) {
+  Field field({{.good = false}, {.good = false}, {}, {.good = false}, {.good = false}, {}});
+  for (int i = 1; i <= 6; ++i) field.exchange(i * 1ms);
+  EXPECT_EQ(field.io->state(0, 6ms).stale_count, 0U);
+  EXPECT_EQ(field.io->state(0, 6ms).failures_count, 4U);
+}
+
 TEST(IoManager, a_late_driver_is_stale_once_its_time_has_passed_and_not_at_it) {
   Field field(std::vector<ScriptedDriver::Turn>(1));
   field.exchange(10ms);
@@ -162,6 +169,26 @@ TEST(IoManager, stale_inputs_stop_the_PLC_if_that_is_asked_for) {
   EXPECT_FALSE(plc->gate().is_open());
   run_until(*plc, now, 50ms);
   EXPECT_EQ(plc->status(0).fault.value().code, FaultCode::io_failed);
+}
+
+TEST(IoManager, stale_inputs_stop_no_PLC_that_only_counts_them_and_none_that_is_in_STOP) {
+  for (const bool is_fault : {false, true}) {
+    SoftPlcSetup setup = setup_of({});
+    setup.cycles.push_back(cycle("a", 10ms, {}, 0, idle()));
+    IoManager::Slot& slot = setup.drivers.emplace_back();
+    slot.config.late_after = 30ms;
+    slot.config.stale_is_fault = is_fault;
+    slot.driver = std::make_unique<ScriptedDriver>(std::vector<ScriptedDriver::Turn>(1));
+    const auto plc = SoftPlc::make(std::move(setup), 0ns).value();
+    if (!is_fault) {
+      ASSERT_TRUE(plc->order_run(StartKind::cold));
+    }
+    nanoseconds now{0};
+    run_until(*plc, now, 40ms);
+    plc->supervise(now);
+    EXPECT_TRUE(plc->io().state(0, now).stale);
+    EXPECT_FALSE(plc->alarm_lamp()) << is_fault;
+  }
 }
 
 // I23
@@ -261,8 +288,9 @@ TEST(Gateway, a_full_queue_refuses_and_a_scan_serves_no_more_than_its_share) {
 // I3
 TEST(Gateway, a_request_that_was_given_up_is_not_carried_out) {
   Served served;
-  EXPECT_EQ(served.plc->gateway().exchange(Served::write(64), 0ns).error(), GatewayError::timed_out);
   ASSERT_TRUE(served.plc->order_run(StartKind::warm));
+  run_until(*served.plc, served.now, 5ms);
+  EXPECT_EQ(served.plc->gateway().exchange(Served::write(64), 0ns).error(), GatewayError::timed_out);
   run_until(*served.plc, served.now, 25ms);
   EXPECT_EQ(served.seen_in_scan, 0U);
 }
@@ -295,6 +323,27 @@ TEST(Gateway, a_scan_that_serves_requests_takes_no_memory_and_gives_none_back) {
   EXPECT_EQ(heap_calls_count(), before);
   for (const auto& ticket : tickets)
     EXPECT_EQ(served.plc->gateway().take(ticket).value().read[1].size(), 200U);
+}
+
+TEST(Gateway, a_request_is_bounded_in_items_and_in_bytes) {
+  Served served;
+  GatewayRequest request = Served::read({0, 1});
+  request.items.resize(GatewayRequest::items_max, request.items[0]);
+  EXPECT_TRUE(served.plc->gateway().submit(request));
+  request.items.push_back(request.items[0]);
+  EXPECT_EQ(served.plc->gateway().submit(request).error(), GatewayError::request_too_long);
+  request = Served::read({0, 256});
+  request.items.resize(4, request.items[0]);
+  EXPECT_TRUE(served.plc->gateway().submit(request));
+  request.items.push_back(Served::read({0, 1}).items[0]);
+  EXPECT_EQ(served.plc->gateway().submit(request).error(), GatewayError::request_too_long);
+}
+
+TEST(Gateway, who_waits_when_it_is_closed_is_told) {
+  Served served;
+  const auto ticket = served.plc->gateway().submit(Served::read({0, 8})).value();
+  served.plc->gateway().close();
+  EXPECT_EQ(served.plc->gateway().take(ticket, true).error(), GatewayError::closed);
 }
 
 TEST(Gateway, what_cannot_be_served_is_refused_before_it_waits) {

@@ -163,6 +163,99 @@ TEST(SoftPlc, two_cycles_that_write_the_same_output_or_send_the_same_word_are_re
       std::string::npos);
 }
 
+TEST(SoftPlc, a_setup_that_cannot_be_run_is_refused_naming_the_cycle) {
+  const auto refusal = [](SoftPlcSetup setup) { return SoftPlc::make(std::move(setup), 0ns).error(); };
+  EXPECT_EQ(refusal(setup_of({})), "a PLC has 1 to 32 cycles");
+  auto cycles = two(cycle("a", 1ms, {}, 0, idle()), cycle("b", 1ms, {}, 8, idle()));
+  cycles[1].config.scan.outputs_in_stop = OutputsInStop::hold;
+  EXPECT_NE(refusal(setup_of(std::move(cycles))).find("cycles a and b disagree about outputs in STOP"),
+            std::string::npos);
+  EXPECT_EQ(refusal(setup_of(one(cycle("a", 1ms, {250, 7}, 0, idle())))),
+            "cycle a sends words that lie beyond its memory");
+}
+
+TEST(SoftPlc, RUN_that_is_ordered_in_RUN_changes_nothing) {
+  const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  nanoseconds now{0};
+  run_until(*plc, now, 25ms);
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  EXPECT_EQ(word(plc->gate().frame().outputs), 3U);
+  run_until(*plc, now, 35ms);
+  EXPECT_EQ(word(plc->gate().frame().outputs), 4U);
+}
+
+TEST(SoftPlc, after_a_cold_start_the_others_receive_zero_until_the_first_scan_has_sent) {
+  std::vector<std::uint64_t> received;
+  const auto plc = make(two(cycle("sender", 10ms, {0, 8}, 0,
+                                  [](const CycleImage& image, const ScanStep&) {
+                                    set_word(image.memory, 7);
+                                    return Progress::finished;
+                                  }),
+                            cycle("receiver", 10ms, {}, 8, [&](const CycleImage& image, const ScanStep&) {
+                              received.push_back(word(image.memory));
+                              return Progress::finished;
+                            })));
+  const auto run_scan = [&](std::size_t index, nanoseconds now) {
+    while (plc->advance_cycle(index, now) <= now) {
+    }
+  };
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  for (const nanoseconds now : {0ms, 10ms, 20ms}) {
+    if (now == 20ms) plc->order_stop();
+    run_scan(0, now);
+    run_scan(1, now);
+  }
+  EXPECT_EQ(received.back(), 7U);
+  received.clear();
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  while (plc->status(0).mode == RunMode::stop) static_cast<void>(plc->advance_cycle(0, 30ms));
+  run_scan(1, 30ms);
+  EXPECT_EQ(received, std::vector<std::uint64_t>{0});
+}
+
+TEST(SoftPlc, a_body_is_told_that_its_scan_is_given_up) {
+  class Loop final : public CycleBody {
+   public:
+    explicit Loop(int& given_up_count) : given_up_count_{given_up_count} {}
+    CycleImage image() noexcept override { return {}; }
+    std::span<const std::byte> output_mask() const noexcept override { return {}; }
+    void start(StartKind /*kind*/) noexcept override {}
+    Progress execute(const ScanStep& /*step*/) noexcept override { return Progress::unfinished; }
+    void give_up_scan() noexcept override { ++given_up_count_; }
+
+   private:
+    int& given_up_count_;
+  };
+  int given_up_count = 0;
+  const auto plc =
+      make(one({.name = "loops", .config = {}, .sends = {}, .body = std::make_unique<Loop>(given_up_count)}));
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  for (nanoseconds now{0}; !plc->alarm_lamp(); now += 10ms) static_cast<void>(plc->advance(now));
+  EXPECT_EQ(given_up_count, 1);
+}
+
+TEST(SoftPlc, new_limits_of_the_gateway_count_in_RUN_and_a_wrong_number_of_cycles_is_refused) {
+  const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
+  ASSERT_TRUE(plc->reconfigure({{.period = 10ms}}, {.queue_max = 1, .requests_per_scan_max = 1}));
+  const GatewayRequest read{.cycle = 0, .items = {{.section = {0, 1}, .written = {}}}};
+  EXPECT_TRUE(plc->gateway().submit(read));
+  EXPECT_EQ(plc->gateway().submit(read).error(), GatewayError::queue_full);
+  EXPECT_FALSE(plc->reconfigure({}, {}));
+  EXPECT_FALSE(plc->reconfigure({{.period = 10ms}, {.period = 10ms}}, {}));
+}
+
+TEST(SoftPlc, stop_now_has_made_the_outputs_safe_when_it_returns) {
+  const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
+  ASSERT_TRUE(plc->order_run(StartKind::cold));
+  nanoseconds now{0};
+  run_until(*plc, now, 25ms);
+  plc->stop_now();
+  EXPECT_EQ(plc->gate().frame().outputs, OutputGate::Outputs{});
+  run_until(*plc, now, 45ms);
+  EXPECT_TRUE(plc->is_stopped());
+}
+
 TEST(SoftPlc, one_that_is_retired_takes_no_RUN_and_one_in_RUN_cannot_be_retired) {
   const auto plc = make(one(cycle("a", 10ms, {}, 0, count_on_outputs)));
   nanoseconds now{0};
