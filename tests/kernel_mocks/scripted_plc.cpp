@@ -8,10 +8,12 @@
 namespace kernel_mocks {
 namespace {
 
-// fx-protocol, legacy map: M n at 0100H + n/8, D n at 1000H + 2n, forced M at 0800H + n.
+// fx-protocol, legacy map: M n at 0100H + n/8, D n at 1000H + 2n, forced M at 0800H + n,
+// M8000 and up at 0F00H.
 constexpr std::size_t m_base = 0x0100;
 constexpr std::size_t d_base = 0x1000;
 constexpr std::uint16_t m_force_base = 0x0800;
+constexpr std::uint16_t special_m_force_base = 0x0F00;
 constexpr std::uint16_t status_address = m_base + 15;
 constexpr std::uint16_t strobe_address = m_base + 12;
 
@@ -91,7 +93,9 @@ void ScriptedPlc::execute(const protocol::fx::Request& request) {
       break;
     case Command::force_on:
     case Command::force_off: {
-      const auto m = static_cast<std::uint16_t>(request.address - m_force_base);
+      const auto m = static_cast<std::uint16_t>(request.address < special_m_force_base
+                                                    ? request.address - m_force_base
+                                                    : request.address - special_m_force_base + 8000);
       const bool on = request.command == Command::force_on;
       set_bit(m, on);
       note(fmt::format("M{} {}", m, on ? "on" : "off"));

@@ -109,6 +109,24 @@ TEST_F(PolledLinkTest, each_request_of_several_threads_is_carried_out_once_and_e
   }
 }
 
+TEST_F(PolledLinkTest, requests_of_several_threads_are_carried_out_in_the_order_in_which_they_were_made) {
+  make_requests_last(50ms);
+  options.poll_interval = 10s;
+  with_link([&](PolledLink& link) {
+    std::this_thread::sleep_for(60ms);  // the first poll is over
+    std::vector<std::thread> threads;
+    for (std::uint16_t m = 0; m < 3; ++m) {
+      threads.emplace_back([&link, m] {
+        (void)link.force(flag(m), true);
+        if (m == 0) (void)link.force(flag(3), true);  // in the slot of the first, before that of the third
+      });
+      std::this_thread::sleep_for(1ms);
+    }
+    for (std::thread& thread : threads) thread.join();
+  });
+  EXPECT_EQ(plc.port.log, (Log{"M0 on", "M1 on", "M2 on", "M3 on"}));
+}
+
 TEST_F(PolledLinkTest, a_request_that_waits_longer_than_call_timeout_is_given_up_and_never_carried_out) {
   options.call_timeout = 30ms;
   make_requests_last(50ms);
