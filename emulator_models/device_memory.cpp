@@ -128,12 +128,6 @@ void DeviceMemory::clear(DeviceKind kind, std::uint16_t first_number, std::uint1
   }
 }
 
-void DeviceMemory::clear_not_latched() noexcept {
-  for (const DeviceKind kind : {DeviceKind::y, DeviceKind::m, DeviceKind::t_contact, DeviceKind::c_contact,
-                                DeviceKind::t_value, DeviceKind::c_value})
-    clear(kind, 0, block(kind).plain_count);
-}
-
 std::vector<Device> DeviceMemory::differences(const DeviceMemory& other) const {
   PLC_CHECK(other.model_ == model_);
   std::vector<Device> changed;

@@ -57,10 +57,6 @@ class DeviceMemory {
   /// @param count  as many of them as the model has, at most
   void clear(protocol::fx::DeviceKind kind, std::uint16_t first_number, std::uint16_t count) noexcept;
 
-  /// What happens to a memory without latched devices when the PLC goes from STOP to RUN: Y, T, C and the M below
-  /// 8000 are cleared.
-  void clear_not_latched() noexcept;
-
   /// The devices whose values differ, in the order X, Y, M, S, T, C, D.
   [[nodiscard]] std::vector<protocol::fx::Device> differences(const DeviceMemory& other) const;
 

@@ -1,11 +1,11 @@
 #include "emulator_models/fx_plc.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "emulator_models/latched_ranges.hpp"
 #include "protocol/check.hpp"
-#include "protocol/fx/device_ranges.hpp"
 
 namespace emulator_models {
 namespace {
@@ -24,18 +24,22 @@ constexpr Device word(std::uint16_t number) noexcept { return {DeviceKind::d, nu
 
 constexpr Device any_error = special_m(8004);
 constexpr Device memory_hold = special_m(8033);
+constexpr Device all_outputs_off = special_m(8034);
 constexpr std::uint16_t hardware_error_number = 8061;
 constexpr std::uint16_t operation_error_number = 8067;
 constexpr Device operation_error_line = word(8069);
 constexpr std::uint32_t watchdog_error = 6105;
 constexpr std::uint32_t value_error = 6706;    ///< a value that the instruction does not take
 constexpr std::uint32_t endless_error = 6709;  ///< other: instructions without an end
-constexpr std::uint16_t first_analog_input = 200;
-constexpr std::uint16_t first_analog_output = 210;
+constexpr Device first_analog_input = word(200);
+constexpr Device first_analog_output = word(210);
+
+soft_plc::ScanConfig scan_config(nanoseconds period) noexcept {
+  return {.period = period, .exchanges_with_cycles = false};
+}
 
 soft_plc::ScanTask make_task(const FxPlcConfig& config, SteadyTime now) {
-  const auto task = soft_plc::ScanTask::make({.period = config.period, .exchanges_with_cycles = false},
-                                             now.time_since_epoch());
+  const auto task = soft_plc::ScanTask::make(scan_config(config.period), now.time_since_epoch());
   PLC_CHECK(task.has_value());
   return *task;
 }
@@ -50,9 +54,13 @@ FxPlc::FxPlc(FxPlcEmulator& emulator, const soft_plc::IlProgram& program, Plant 
       port_{port},
       config_{config},
       task_{make_task(config, now)},
+      period_{config.period},
       now_{now} {
+  const auto locked = emulator_.lock();
+  analog_inputs_index_ = locked->place_of(first_analog_input).byte_index;
+  analog_outputs_index_ = locked->place_of(first_analog_output).byte_index;
   if (config.watchdog_limit)
-    emulator_.lock()->set(watchdog_time, static_cast<std::uint32_t>(config.watchdog_limit->count()));
+    locked->set(watchdog_time, static_cast<std::uint32_t>(config.watchdog_limit->count()));
 }
 
 void FxPlc::observe_with(FxPlcObserver* observer) noexcept {
@@ -83,6 +91,7 @@ void FxPlc::system_analysis() noexcept {
   if (port_ != nullptr) port_->serve(*locked_);
   order_mode(power_up);
   show_times(power_up);
+  set_period();
   // 0 would switch the watchdog's limit, not the watchdog, off: it counts as the shortest.
   watchdog_limit_ = std::max<nanoseconds>(std::chrono::milliseconds{memory().get(watchdog_time)}, 1ms);
   task_.set_watchdog_limit(watchdog_limit_);
@@ -108,9 +117,18 @@ void FxPlc::order_mode(bool power_up) noexcept {
   [[maybe_unused]] const bool accepted = task_.order_run(cold ? StartKind::cold : config_.start);
 }
 
+void FxPlc::set_period() noexcept {
+  const nanoseconds period = memory().get(constant_scan) != 0
+                                 ? std::chrono::milliseconds{memory().get(constant_scan_time)}
+                                 : config_.period;
+  if (std::exchange(period_, period) != period) task_.reconfigure(scan_config(period));
+}
+
 void FxPlc::show_times(bool power_up) noexcept {
   set_clock_flags(memory(), now_ - *power_up_);
-  set_calendar(memory(), wall_);
+  // Nobody else can write the calendar, and to work it out takes longer than all else between two scans.
+  const auto second = std::chrono::floor<std::chrono::seconds>(wall_);
+  if (std::exchange(calendar_second_, second) != second) set_calendar(memory(), second);
   const soft_plc::ScanTimes& times = task_.scan_times();
   if (power_up || times.scans_count == 0) return;
   const auto units = [](nanoseconds time) {
@@ -134,16 +152,9 @@ void FxPlc::read_inputs() noexcept {
                           : first_scan_of_run_ ? RunMode::first_run_scan
                                                : RunMode::run);
   if (plant_) plant_(terminals_, now_);
-  const std::uint16_t inputs_count = protocol::fx::ranges_of(memory().model()).x;
-  const std::span<std::byte> image = memory().inputs();
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    unsigned byte = 0;
-    for (std::size_t bit = 0; bit < 8 && 8 * i + bit < inputs_count; ++bit)
-      byte |= unsigned{terminals_.inputs[8 * i + bit]} << bit;
-    image[i] = static_cast<std::byte>(byte);
-  }
-  for (std::uint16_t i = 0; i < terminals_.analog_inputs.size(); ++i)
-    memory().set(word(static_cast<std::uint16_t>(first_analog_input + i)), terminals_.analog_inputs[i]);
+  copy_points(terminals_.inputs, memory().inputs());
+  std::memcpy(memory().bytes().data() + analog_inputs_index_, terminals_.analog_inputs.data(),
+              sizeof terminals_.analog_inputs);
 }
 
 Progress FxPlc::execute(const soft_plc::ScanStep& step) noexcept {
@@ -156,18 +167,14 @@ Progress FxPlc::execute(const soft_plc::ScanStep& step) noexcept {
 }
 
 void FxPlc::write_outputs() noexcept {
-  if (memory().get(special_m(8034)) != 0) {
+  if (memory().get(all_outputs_off) != 0) {
     terminals_.outputs.reset();
     terminals_.analog_outputs.fill(0);
     return;
   }
-  const std::uint16_t outputs_count = protocol::fx::ranges_of(memory().model()).y;
-  const std::span<const std::byte> image = memory().outputs();
-  for (std::size_t i = 0; i < outputs_count; ++i)
-    terminals_.outputs[i] = (std::to_integer<unsigned>(image[i / 8]) >> (i % 8) & 1U) != 0;
-  for (std::uint16_t i = 0; i < terminals_.analog_outputs.size(); ++i)
-    terminals_.analog_outputs[i] =
-        static_cast<std::uint16_t>(memory().get(word(static_cast<std::uint16_t>(first_analog_output + i))));
+  terminals_.outputs = points_of(memory().outputs());
+  std::memcpy(terminals_.analog_outputs.data(), memory().bytes().data() + analog_outputs_index_,
+              sizeof terminals_.analog_outputs);
 }
 
 void FxPlc::write_safe_outputs() noexcept {

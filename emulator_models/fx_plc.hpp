@@ -12,10 +12,12 @@
 //       M8061 and M8004 on, lamp CPU-E lit; a run-time fault of the program likewise, with 67xx in D8067, its line in
 //       D8069, M8067, M8004 and PROG-E.
 //   I3  that is cleared by an order of RUN only: the switch from STOP to RUN, or M8035 with M8036.
-// Left out: interrupts, immediate refresh, constant scan (M8039, D8039), the WDT instruction. Not thread-safe.
+// With M8039 on, a scan begins every D8039 ms instead of every FxPlcConfig::period.
+// Left out: interrupts, immediate refresh, the WDT instruction. Not thread-safe.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -84,6 +86,7 @@ class FxPlc final : private soft_plc::ScanProgram {
   void set_alarm_lamp(bool on) noexcept override;
 
   void order_mode(bool power_up) noexcept;
+  void set_period() noexcept;
   void show_times(bool power_up) noexcept;
   /// Whether the next scan of RUN has not begun for longer than the watchdog allows: the hardware re-triggers its
   /// watchdog at the end of each scan, and so must not only look while one is under way.
@@ -97,6 +100,7 @@ class FxPlc final : private soft_plc::ScanProgram {
   FxPlcObserver* observer_ = nullptr;
   FxPlcConfig config_;
   soft_plc::ScanTask task_;
+  std::chrono::nanoseconds period_;  ///< ordered, counts from the next scan
   Terminals terminals_;
   std::optional<FxPlcEmulator::LockedMemory> locked_;
   soft_plc::Progress last_progress_ = soft_plc::Progress::finished;
@@ -105,6 +109,9 @@ class FxPlc final : private soft_plc::ScanProgram {
   WallTime wall_{};
   std::optional<SteadyTime> power_up_;
   std::chrono::nanoseconds watchdog_limit_{0};
+  std::optional<std::chrono::sys_seconds> calendar_second_;  ///< that D8013 to D8019 show
+  std::size_t analog_inputs_index_ = 0;                      ///< of D200 and of D210 in the memory's bytes
+  std::size_t analog_outputs_index_ = 0;
   bool run_switch_ = true;
   bool run_switch_seen_ = true;
   bool cold_start_ordered_ = false;

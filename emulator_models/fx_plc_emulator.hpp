@@ -21,7 +21,7 @@ namespace emulator_models {
 
 class FxPlcEmulator final : public IPlcEmulator {
  public:
-  /// Switched on, in STOP; the first scan brings it into RUN (scan_cycle.hpp).
+  /// Switched on, in STOP; the first scan brings it into RUN (fx_plc.hpp).
   explicit FxPlcEmulator(protocol::fx::Model model);
 
   /// @return ACK to ENQ; data, ACK or NAK to a frame; nothing to anything else

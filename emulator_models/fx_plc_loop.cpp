@@ -3,13 +3,13 @@
 namespace emulator_models {
 
 void FxPlcLoop::run() noexcept {
-  for (;;) {
-    const soft_plc::ScanStep step =
-        plc_.advance(std::chrono::steady_clock::now(), std::chrono::system_clock::now());
+  for (WallTime wall = std::chrono::system_clock::now();;) {
+    const soft_plc::ScanStep step = plc_.advance(std::chrono::steady_clock::now(), wall);
     if (step.action != soft_plc::ScanAction::wait) continue;
     report_fault();
     std::unique_lock lock{mutex_};
     if (stopped_.wait_until(lock, SteadyTime{step.until}, [this] { return stop_requested_; })) return;
+    wall = std::chrono::system_clock::now();
   }
 }
 

@@ -30,6 +30,9 @@ constexpr std::uint16_t first_retentive_timer = 246;
 constexpr std::uint16_t first_timer_behind_retentive = 256;
 constexpr std::uint16_t first_wide_counter = 200;
 constexpr std::uint16_t wide_unlatched_count = 20;
+// What is wired is no memory, though it lies where some models latch (terminals.hpp).
+constexpr std::uint16_t first_terminal_word = 200;
+constexpr std::uint16_t terminal_words_count = 18;
 
 }  // namespace
 
@@ -39,6 +42,7 @@ void clear_unlatched(DeviceMemory& memory) noexcept {
   memory.clear(DeviceKind::m, 0, first.m);
   memory.clear(DeviceKind::s, 0, first.s);
   memory.clear(DeviceKind::d, 0, first.d);
+  memory.clear(DeviceKind::d, first_terminal_word, terminal_words_count);
   for (const DeviceKind kind : {DeviceKind::t_contact, DeviceKind::t_value}) {
     memory.clear(kind, 0, first_retentive_timer);
     memory.clear(kind, first_timer_behind_retentive, all);

@@ -6,6 +6,8 @@
 //   FX1N     384-1535        0-999         16-199, 220-234            128-7999     246-255
 //   FX2N     500-3071        500-999       100-199, 220-234           200-7999     246-255
 //   FX3U     500-7679        500-4095      100-199, 220-234           200-7999     246-255
+//
+// D200 to D217 are wired to the terminals and latched on no model.
 #pragma once
 
 #include "emulator_models/device_memory.hpp"

@@ -126,7 +126,8 @@ int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::P
 
   // From before the first scan and the first request on: no change is missed.
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
-  const PlcView view{terminal ? PlcView::Style::screen : PlcView::Style::lines, emulator.snapshot()};
+  const PlcView view{terminal ? PlcView::Style::screen : PlcView::Style::lines, emulator.snapshot(),
+                     labels_of(plant_of(options))};
   FxPlc plc{emulator, program.program, std::move(plant), &port, config, std::chrono::steady_clock::now()};
   FxPlcLoop loop{plc, [&](const FxPlc& changed) { tell_fault(changed, program.name); }};
   std::thread scan_thread{[&] { loop.run(); }};

@@ -6,9 +6,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
+#include <string_view>
 
+#include "emulator_models/device_labels.hpp"
 #include "emulator_models/device_memory.hpp"
 
 namespace emulator_models {
@@ -17,7 +21,8 @@ class PlcView {
  public:
   enum class Style : std::uint8_t { screen, lines };
 
-  PlcView(Style style, const DeviceMemory& memory);
+  /// @param labels  must outlive this; a screen shows these devices, lines show any
+  PlcView(Style style, const DeviceMemory& memory, std::span<const DeviceLabel> labels);
 
   /// @param memory   the memory now
   /// @param elapsed  time since the start
@@ -25,12 +30,14 @@ class PlcView {
   [[nodiscard]] std::string update(const DeviceMemory& memory, std::chrono::nanoseconds elapsed);
 
  private:
+  [[nodiscard]] std::string_view label_of(protocol::fx::Device device) const noexcept;
   [[nodiscard]] std::string screen(std::chrono::nanoseconds elapsed) const;
 
   static constexpr std::size_t shown_changes_max = 12;
 
   Style style_;
   DeviceMemory shown_;
+  std::span<const DeviceLabel> labels_;
   bool nothing_shown_yet_ = true;
   std::deque<std::string> last_changes_;
 };

@@ -5,14 +5,14 @@
 namespace emulator_models {
 
 ScanBoundaryPort::ScanBoundaryPort(FxPlcEmulator& plc, std::chrono::nanoseconds patience) noexcept
-    : plc_{plc}, patience_{patience}, watchdog_time_{plc.read_word(watchdog_time)} {}
+    : plc_{plc}, patience_{patience}, scan_time_max_{plc.read_word(watchdog_time)} {}
 
 protocol::fx::FrameBytes ScanBoundaryPort::process(std::span<const std::byte> request) noexcept {
   Waiting waiting{.request = request, .answer = {}};
   std::unique_lock lock{mutex_};
   if (closed_ || queue_length_ == waiting_max) return {};
   queue_[queue_length_++] = &waiting;
-  const auto deadline = std::chrono::steady_clock::now() + watchdog_time_ + patience_;
+  const auto deadline = std::chrono::steady_clock::now() + scan_time_max_ + patience_;
   if (!answered_.wait_until(lock, deadline, [&] { return waiting.done; })) withdraw(waiting);
   return waiting.answer;
 }
@@ -21,7 +21,9 @@ void ScanBoundaryPort::serve(const FxPlcEmulator::LockedMemory& memory) noexcept
   const std::lock_guard lock{mutex_};
   execute_all(memory);
   // Under the same lock: the request that follows one which has set D8000 waits as long as the scan now may.
-  watchdog_time_ = std::chrono::milliseconds{memory->get(watchdog_time)};
+  scan_time_max_ = std::chrono::milliseconds{memory->get(watchdog_time)};
+  if (memory->get(constant_scan) != 0)
+    scan_time_max_ += std::chrono::milliseconds{memory->get(constant_scan_time)};
 }
 
 void ScanBoundaryPort::close(const FxPlcEmulator::LockedMemory& memory) noexcept {

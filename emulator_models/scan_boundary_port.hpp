@@ -2,7 +2,8 @@
 //
 // One request, one image: what a request reads and writes lies between two scans, whole, and its answer takes up to one
 // scan. When nobody scans, it is given up after a bounded time and met with silence, as a PLC that hangs would. No scan
-// lasts longer than D8000 allows, so a request waits for that time and the port's patience on top of it.
+// lasts longer than D8000 allows, and none begins later than M8039 makes it: a request waits for these times and the
+// port's patience on top of them.
 //
 // Invariants
 //   I1  requests are executed in the order in which they came, each once or, when given up, not at all.
@@ -28,7 +29,7 @@ class ScanBoundaryPort final : public IPlcEmulator {
   static constexpr std::size_t waiting_max = 8;
 
   /// @param plc       must outlive this
-  /// @param patience  how much longer than the watchdog's time a request waits; above the scan period
+  /// @param patience  how much longer than a scan may last a request waits; above the scan period
   explicit ScanBoundaryPort(FxPlcEmulator& plc,
                             std::chrono::nanoseconds patience = default_patience) noexcept;
 
@@ -53,7 +54,7 @@ class ScanBoundaryPort final : public IPlcEmulator {
 
   FxPlcEmulator& plc_;
   std::chrono::nanoseconds patience_;
-  std::chrono::milliseconds watchdog_time_;  ///< of the scan that is under way
+  std::chrono::milliseconds scan_time_max_;  ///< of the scan that is under way, and the constant scan time
   bool closed_ = false;
   std::mutex mutex_;
   std::condition_variable answered_;

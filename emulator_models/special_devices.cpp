@@ -1,7 +1,5 @@
 #include "emulator_models/special_devices.hpp"
 
-#include <algorithm>
-
 namespace emulator_models {
 namespace {
 
@@ -67,15 +65,6 @@ void set_calendar(DeviceMemory& memory, WallTime now) noexcept {
   memory.set(special_d(8017), static_cast<unsigned>(date.month()));
   memory.set(special_d(8018), static_cast<std::uint32_t>(static_cast<int>(date.year())));
   memory.set(special_d(8019), std::chrono::weekday{day}.c_encoding());
-}
-
-void set_scan_time(DeviceMemory& memory, std::chrono::nanoseconds duration) noexcept {
-  constexpr std::chrono::nanoseconds unit = 100us;
-  const auto units = static_cast<std::uint32_t>(std::clamp<std::int64_t>(duration / unit, 0, 0xFFFF));
-  const std::uint32_t shortest = memory.get(special_d(8011));
-  memory.set(special_d(8010), units);
-  if (units != 0) memory.set(special_d(8011), shortest == 0 ? units : std::min(units, shortest));
-  memory.set(special_d(8012), std::max(units, memory.get(special_d(8012))));
 }
 
 void note_port_trouble(DeviceMemory& memory, PortTrouble trouble) noexcept {

@@ -18,6 +18,10 @@ using WallTime = std::chrono::system_clock::time_point;
 /// D8000: the longest scan, in ms.
 inline constexpr protocol::fx::Device watchdog_time{protocol::fx::DeviceKind::d, 8000};
 
+/// M8039 on: a scan begins every D8039 ms.
+inline constexpr protocol::fx::Device constant_scan{protocol::fx::DeviceKind::m, 8039};
+inline constexpr protocol::fx::Device constant_scan_time{protocol::fx::DeviceKind::d, 8039};
+
 enum class RunMode : std::uint8_t { stop, first_run_scan, run };
 
 /// D8062: what went wrong on the programming port.
@@ -41,10 +45,6 @@ void set_clock_flags(DeviceMemory& memory, std::chrono::nanoseconds since_power_
 
 /// D8013 to D8019: second, minute, hour, day, month, year (four digits), weekday (0 = Sunday), in UTC.
 void set_calendar(DeviceMemory& memory, WallTime now) noexcept;
-
-/// D8010 to D8012: last, shortest and longest scan in units of 0.1 ms; scans that round to 0 are not counted
-/// as the shortest.
-void set_scan_time(DeviceMemory& memory, std::chrono::nanoseconds duration) noexcept;
 
 /// M8062 on, D8062 = the trouble; both stay until somebody clears them.
 void note_port_trouble(DeviceMemory& memory, PortTrouble trouble) noexcept;

@@ -84,19 +84,6 @@ TEST(DeviceMemory, nothing_is_read_or_written_where_no_device_lies) {
   EXPECT_FALSE(memory.write_byte(0x1200, AddressSpace::legacy, std::byte{1}));
 }
 
-TEST(DeviceMemory, clearing_spares_inputs_registers_states_and_special_relays) {
-  DeviceMemory memory{Model::fx3u};
-  const Device cleared[] = {
-      y(3),  m(7679), {DeviceKind::t_contact, 5}, {DeviceKind::t_value, 5}, {DeviceKind::c_contact, 5},
-      c(255)};
-  const Device spared[] = {{DeviceKind::x, 3}, m(8000), d(0), d(8000), {DeviceKind::s, 10}};
-  for (const Device device : cleared) memory.set(device, 1);
-  for (const Device device : spared) memory.set(device, 1);
-  memory.clear_not_latched();
-  for (const Device device : cleared) EXPECT_EQ(memory.get(device), 0U) << to_string(device);
-  for (const Device device : spared) EXPECT_EQ(memory.get(device), 1U) << to_string(device);
-}
-
 TEST(DeviceMemory, differences_names_each_device_that_differs) {
   DeviceMemory before{Model::fx3u};
   DeviceMemory after = before;

@@ -234,10 +234,10 @@ TEST(LatchedRanges, of_each_family_are_kept_and_their_neighbours_cleared) {
     Model model;
     std::vector<std::string> kept, cleared;
   } families[] = {
-      {Model::fx1s, {"M384", "S0", "CN16", "D128"}, {"M383", "CN15", "D127", "TN63", "Y0"}},
+      {Model::fx1s, {"M384", "S0", "CN16", "D128"}, {"M383", "CN15", "D127", "D200", "TN63", "Y0"}},
       {Model::fx1n, {"M384", "S0", "CN16", "D128", "TN246", "CN220"}, {"M383", "CN15", "D127", "CN219"}},
-      {Model::fx2n, {"M500", "S500", "CN100", "D200", "TS255"}, {"M499", "S499", "CN99", "D199"}},
-      {Model::fx3u, {"M7679", "S500", "CN220", "D200", "TN246"}, {"M499", "TN256", "TN245", "CS99"}}};
+      {Model::fx2n, {"M500", "S500", "CN100", "D218", "TS255"}, {"M499", "S499", "CN99", "D199", "D217"}},
+      {Model::fx3u, {"M7679", "S500", "CN220", "D218", "TN246"}, {"M499", "D200", "TN256", "TN245", "CS99"}}};
   for (const auto& family : families) {
     DeviceMemory memory{family.model};
     const auto device = [&](const std::string& name) {

@@ -71,21 +71,6 @@ TEST(SpecialDevices, the_calendar_counts_as_the_captured_unit_did) {
     EXPECT_EQ(memory.get(d(static_cast<std::uint16_t>(8013 + i))), wanted[i]) << 8013 + i;
 }
 
-TEST(SpecialDevices, scan_times_are_kept_in_units_of_a_tenth_of_a_millisecond) {
-  DeviceMemory memory{Model::fx3u};
-  const auto shown = [&] {
-    return std::vector{memory.get(d(8010)), memory.get(d(8011)), memory.get(d(8012))};
-  };
-  set_scan_time(memory, 1ms);
-  EXPECT_EQ(shown(), (std::vector{10U, 10U, 10U}));
-  set_scan_time(memory, 3ms);
-  EXPECT_EQ(shown(), (std::vector{30U, 10U, 30U}));
-  set_scan_time(memory, 99us);
-  EXPECT_EQ(shown(), (std::vector{0U, 10U, 30U}));
-  set_scan_time(memory, 1h);
-  EXPECT_EQ(shown(), (std::vector{0xFFFFU, 10U, 0xFFFFU}));
-}
-
 TEST(SpecialDevices, remote_run_needs_both_bits) {
   DeviceMemory memory{Model::fx3u};
   EXPECT_FALSE(obey_remote_switch(memory, false));
