@@ -224,7 +224,7 @@ void add_configured_options(CLI::App& app, ConfiguredEmulatorOptions& options) {
       ->check(CLI::Range(1, 10'000'000))
       ->needs(config);
   // What belongs to the port is served for a configured PLC, too; all else is said in the file.
-  constexpr std::array fx_only{"--model", "--program", "--plant", "--scan-period-ms", "--watch"};
+  constexpr std::array fx_only{"--model", "--program", "--plant", "--scan-period-ms", "--watch", "--archive"};
   for (CLI::Option* const other : others) {
     if (std::ranges::any_of(fx_only, [&](const char* name) { return other->check_name(name); }))
       config->excludes(other);

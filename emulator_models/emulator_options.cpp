@@ -41,6 +41,17 @@ void add_options(CLI::App& app, EmulatorOptions& options) {
       ->capture_default_str();
   app.add_flag("--cold", options.cold,
                "Each start of RUN clears latched devices and retained variables, too");
+  CLI::Option* const archive = app.add_option(
+      "--archive", options.archive.path,
+      "SQLite file that keeps what the PLC does: scans, faults, mode changes, writes of the port");
+  app.add_option("--archive-signals", options.archive.signals,
+                 "Bits whose changes go into the archive, too: X0,Y17,M100")
+      ->delimiter(',')
+      ->needs(archive);
+  app.add_option("--archive-rows", options.archive.rows_max, "Newest rows that the archive keeps")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
+      ->capture_default_str()
+      ->needs(archive);
   app.add_flag("--watch", options.watch,
                "Show the PLC's memory live; a line for each change when the output is not a terminal");
   protocol::add_paper_options(app, options.paper, protocol::PaperSide::emulator);

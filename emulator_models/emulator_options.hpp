@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emulator_models/archive/fx_archive.hpp"
 #include "emulator_models/plant_choice.hpp"
 #include "protocol/fx/address_map.hpp"
 #include "protocol/paper_options.hpp"
@@ -26,6 +27,7 @@ struct EmulatorOptions {
   std::vector<std::string> failures;  ///< NAME or NAME@SECONDS
   unsigned watchdog_ms = 200;         ///< D8000 at power-up
   bool cold = false;                  ///< each start of RUN clears latched devices, too
+  archive::FxArchiveOptions archive;
   protocol::PaperOptions paper;
 };
 

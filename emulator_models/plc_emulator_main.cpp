@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -103,6 +104,12 @@ FxPlcConfig config_of(const EmulatorOptions& options) {
           .start = options.cold ? soft_plc::StartKind::cold : soft_plc::StartKind::warm};
 }
 
+auto open_archive(const EmulatorOptions& options) {
+  return archive::FxArchive::open(options.archive, options.model, std::chrono::steady_clock::now(),
+                                  std::chrono::system_clock::now(),
+                                  [](const std::string& message) { complain(exit_ended, message); });
+}
+
 int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::Plant plant) {
   // Blocked before there is anything to clean up, and before the first thread starts: all threads inherit it
   // and only the main thread takes the signals.
@@ -129,6 +136,13 @@ int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::P
   const PlcView view{terminal ? PlcView::Style::screen : PlcView::Style::lines, emulator.snapshot(),
                      labels_of(plant_of(options))};
   FxPlc plc{emulator, program.program, std::move(plant), &port, config, std::chrono::steady_clock::now()};
+  std::unique_ptr<archive::FxArchive> archive;
+  if (!options.archive.path.empty()) {
+    auto opened = open_archive(options);
+    if (!opened) return complain(exit_usage, opened.error());
+    archive = std::move(*opened);
+    plc.observe_with(&archive->recorder());
+  }
   FxPlcLoop loop{plc, [&](const FxPlc& changed) { tell_fault(changed, program.name); }};
   std::thread scan_thread{[&] { loop.run(); }};
   std::thread handler_thread;
@@ -150,6 +164,7 @@ int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::P
   loop.request_stop();
   scan_thread.join();
   port.close(emulator.lock());
+  if (archive) complain(exit_ended, archive->stop(std::chrono::steady_clock::now()));
   if (pty_thread.joinable()) pty_thread.join();
   if (handler_thread.joinable()) handler_thread.join();
   if (segment && segment->kernel_is_attached())

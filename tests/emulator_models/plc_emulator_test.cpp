@@ -7,6 +7,7 @@
 
 #include "protocol/role_lock.hpp"
 #include "protocol/shared_memory_wrapper.hpp"
+#include "tests/emulator_models/archive/archive_rig.hpp"
 #include "tests/emulator_models/emulator_process.hpp"
 #include "tests/protocol/fx/worked_examples.hpp"
 
@@ -155,6 +156,24 @@ TEST(PlcEmulatorPty, watch_prints_a_line_for_each_change) {
   EXPECT_EQ(emulator.wait_for_exit(), 0);
 }
 
+TEST(PlcEmulatorArchive, what_the_plc_did_and_what_the_port_wrote_stands_in_the_file_when_it_has_ended) {
+  const test_support::TemporaryFolder folder;
+  const auto file = folder.path() / "plc.archive";
+  EmulatorProcess emulator{
+      {"--pty", "--archive", file, "--archive-signals", "M0,S0", "--archive-rows", "1000"}};
+  const SerialLine line{emulator.wait_for_line("pty: ")};
+  wait_for(line, in_run);
+  expect_dialogue(line, {"force S0 on", "02 37 30 30 30 30 03 46 41", "06"});
+  wait_for(line, in_run);
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_NE(emulator.printed().find(", 0 records lost"), std::string::npos) << emulator.printed();
+  archive::OtherConnection query{file};
+  EXPECT_EQ(query("SELECT area, address, bytes, first_bytes FROM port_writes"), "2 0 1 0000000000000001 ");
+  EXPECT_EQ(query("SELECT signal, before, after FROM signal_changes WHERE signal = 'S0'"), "S0 0 1 ");
+  EXPECT_EQ(query("SELECT what FROM history WHERE event = 'mode'"), "RUN ");
+}
+
 struct PlcEmulatorSegment : ::testing::Test {
   const std::string segment = "ltsim-test-emulator-" + std::to_string(::getpid());
   ~PlcEmulatorSegment() override { SharedMemoryWrapper::remove(segment); }
@@ -223,6 +242,9 @@ TEST(PlcEmulatorUsage, help_is_0_and_bad_usage_is_2) {
               {{"--pty", "--model", "FX9"}, 2},
               {{"--pty", "--scan-period-ms", "0"}, 2},
               {{"--pty", "--length-check", "maybe"}, 2},
+              {{"--pty", "--archive", "/nowhere/plc.archive"}, 2},
+              {{"--pty", "--archive-signals", "Y0"}, 2},
+              {{"--pty", "--archive", "/nowhere/plc.archive", "--archive-signals", "Y8"}, 2},
               {{"--nonsense"}, 2}};
   for (const auto& use : uses) {
     EmulatorProcess emulator{use.arguments};
