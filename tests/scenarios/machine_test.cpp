@@ -65,4 +65,32 @@ TEST(Machine, a_kernel_that_does_not_wait_for_fin_to_be_low_is_found) {
       << report.failures.front().outcome.message;
 }
 
+TEST(EndlessProgram, is_stopped_by_the_watchdog_whoever_is_held_up) {
+  const auto report = explore("machine/endless-program", 8);
+  EXPECT_TRUE(report.failures.empty()) << report.failures.front().outcome.message;
+}
+
+TEST(EndlessProgram, takes_the_same_scheduling_points_for_the_same_seed) {
+  const auto points = [](std::uint64_t seed) {
+    ltsim::SwarmStrategy strategy;
+    ltsim::Explorer{world()}.execute(*ltsim::find_scenario("machine/endless-program"), strategy, seed,
+                                     nullptr);
+    return world().scheduler().points();
+  };
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) EXPECT_EQ(points(seed), points(seed)) << seed;
+}
+
+TEST(EndlessProgram, is_stopped_within_150_ms_when_nobody_is_held_up) {
+  const ltsim::Schedule nothing_special{.scenario = "machine/endless-program",
+                                        .outcome = ltsim::OutcomeKind::passed,
+                                        .message = {},
+                                        .deviations = {}};
+  const auto report = ltsim::Explorer{world()}.replay(*ltsim::find_scenario("machine/endless-program"),
+                                                      nothing_special, nullptr);
+  EXPECT_TRUE(report.outcome.passed()) << report.outcome.message;
+  // Three scans of 10 ms, then the one that hangs.
+  EXPECT_GT(report.at, std::chrono::milliseconds{180});
+  EXPECT_LT(report.at, std::chrono::milliseconds{181});
+}
+
 }  // namespace

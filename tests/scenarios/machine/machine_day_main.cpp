@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <random>
 #include <string>
 #include <thread>
@@ -83,7 +84,7 @@ struct Shift {
   std::atomic<bool> over{false};
   std::atomic<bool> broken{false};  ///< a failure is there
   std::uint64_t workpieces = 0;
-  std::uint64_t programs_cut_short = 0;
+  std::map<std::string, unsigned> endings;  ///< why part programs were cut short
   std::uint64_t failures = 0;
 };
 
@@ -107,6 +108,15 @@ class WorkpieceCounter final : public kernel_mocks::PartProgramObserver {
   std::uint64_t count_ = 0;
 };
 
+std::string reason_of(const kernel_mocks::RunResult& result) {
+  if (!result.failure) return result.message;
+  if (result.failure->fault == kernel_mocks::LogicFault::alarm)
+    return fmt::format("PLC alarm {}", result.failure->alarm_number);
+  kernel_mocks::LogicFailure failure = *result.failure;
+  failure.after = 0ns;
+  return to_string(failure);
+}
+
 /// One part program after the other; after one that fails the operator has the machine repaired, puts things right
 /// and begins anew.
 void run_kernel(scenarios::WatchedMachine& machine, scenarios::FunctionMonitor& functions, Shift& shift) {
@@ -119,10 +129,10 @@ void run_kernel(scenarios::WatchedMachine& machine, scenarios::FunctionMonitor& 
   kernel_mocks::PartProgramRunner runner{logic_task, {}, &workpieces};
   while (!shift.over.load()) {
     functions.program_begins();
-    const bool ended = runner.run(program).outcome == RunOutcome::ended;
+    const kernel_mocks::RunResult result = runner.run(program);
     shift.workpieces = workpieces.count();
-    if (ended) continue;
-    ++shift.programs_cut_short;
+    if (result.outcome == RunOutcome::ended) continue;
+    if (!shift.over.load()) ++shift.endings[reason_of(result)];
     do std::this_thread::sleep_for(20s);
     while (shift.broken.load() && !shift.over.load());
     machine.put_tool_table_right();
@@ -208,8 +218,9 @@ int run(const Arguments& arguments) {
   fmt::print("{:.2f} h simulated in {:.1f} s ({:.0f} scans a second, {} scheduling points)\n",
              arguments.hours, real.count(), static_cast<double>(length / scan_period) / real.count(),
              world.scheduler().points());
-  fmt::print("{} workpieces; {} failures of the machine, {} part programs cut short\n", shift.workpieces,
-             shift.failures, shift.programs_cut_short);
+  fmt::print("{} workpieces; {} failures of the machine; part programs cut short:\n", shift.workpieces,
+             shift.failures);
+  for (const auto& [reason, count] : shift.endings) fmt::print("  {:3} by {}\n", count, reason);
   fmt::print("archive {}: {} rows written, {} lost; the newest {} are kept\n", arguments.archive,
              counts.stored_count, counts.lost_count, arguments.rows_max);
   if (!outcome.passed()) {
