@@ -39,7 +39,8 @@ constexpr auto scan_period = 1ms;
 
 /// One workpiece. A part program has so many that it lasts an hour.
 constexpr unsigned workpieces_in_program = 100;
-constexpr const char* workpiece = R"(N10 T3 M6
+constexpr const char* workpiece = R"(N5 M10
+N10 T3 M6
 N20 S1500 M3
 N30 M8
 N40 G1 X40 Y10 F1200
