@@ -1,5 +1,7 @@
 #include "tests/emulator_models/plants/machine_tool_rig.hpp"
 
+#include "emulator_models/fx_address_map.hpp"
+
 #include <gtest/gtest.h>
 
 namespace emulator_models {
@@ -7,12 +9,13 @@ namespace {
 
 using namespace std::chrono_literals;
 using machine_tool::Y;
+using protocol::fx::DeviceKind;
 
-constexpr std::size_t analog_inputs_word = 200;
-constexpr std::size_t analog_outputs_word = 210;
+constexpr std::uint16_t analog_inputs_word = 200;
+constexpr std::uint16_t analog_outputs_word = 210;
 
 soft_plc::IlProgram compiled(std::string_view source) {
-  auto program = soft_plc::compile(source);
+  auto program = soft_plc::compile(source, FxAddressMap{protocol::fx::Model::fx3u});
   EXPECT_TRUE(program.has_value()) << to_string(program.error());
   return std::move(*program);
 }
@@ -28,19 +31,15 @@ MachineToolRig::MachineToolRig(std::string_view source, std::chrono::nanoseconds
 
 void MachineToolRig::scan() {
   plant.advance(terminals, now);
-  inputs_.fill(std::byte{0});
-  for (std::size_t i = 0; i < terminals.inputs.size(); ++i) {
-    if (terminals.inputs.test(i)) inputs_[i / 8] |= std::byte{1} << (i % 8);
-  }
-  for (std::size_t i = 0; i < Terminals::analogs_count; ++i)
+  copy_points(terminals.inputs, devices_.inputs());
+  for (std::uint16_t i = 0; i < Terminals::analogs_count; ++i)
     set_d(analog_inputs_word + i, terminals.analog_inputs[i]);
-  const auto executed = machine_.run_scan({inputs_, outputs_, memory_}, now.time_since_epoch());
+  const auto executed =
+      machine_.run_scan({devices_.inputs(), devices_.outputs(), devices_.bytes()}, now.time_since_epoch());
   ASSERT_TRUE(executed.has_value()) << to_string(executed.error());
   instructions_of_last_scan = *executed;
-  for (std::size_t i = 0; i < terminals.outputs.size(); ++i) {
-    terminals.outputs.set(i, (outputs_[i / 8] & std::byte{1} << (i % 8)) != std::byte{0});
-  }
-  for (std::size_t i = 0; i < Terminals::analogs_count; ++i) {
+  terminals.outputs = points_of(devices_.outputs());
+  for (std::uint16_t i = 0; i < Terminals::analogs_count; ++i) {
     terminals.analog_outputs[i] = static_cast<std::uint16_t>(d(analog_outputs_word + i));
   }
   const MachineToolContract contract{.m_code = static_cast<std::uint16_t>(d(100)),
@@ -96,7 +95,7 @@ void MachineToolRig::give_t(int tool) {
 }
 
 void MachineToolRig::take_back_strobes() {
-  for (const std::size_t strobe : {100, 101, 102}) set_m(strobe, false);
+  for (std::uint16_t strobe = 100; strobe <= 102; ++strobe) set_m(strobe, false);
   run_for(2 * period_);
 }
 
@@ -122,19 +121,13 @@ std::chrono::milliseconds MachineToolRig::set_speed(int speed) {
   return wait_for_fin();
 }
 
-bool MachineToolRig::m(std::size_t number) const {
-  return (memory_[number / 8] & std::byte{1} << (number % 8)) != std::byte{0};
+bool MachineToolRig::m(std::uint16_t number) const { return devices_.get({DeviceKind::m, number}) != 0; }
+void MachineToolRig::set_m(std::uint16_t number, bool on) { devices_.set({DeviceKind::m, number}, on); }
+int MachineToolRig::d(std::uint16_t number) const {
+  return static_cast<int>(devices_.get({DeviceKind::d, number}));
 }
-void MachineToolRig::set_m(std::size_t number, bool on) {
-  const std::byte bit = std::byte{1} << (number % 8);
-  memory_[number / 8] = on ? memory_[number / 8] | bit : memory_[number / 8] & ~bit;
-}
-int MachineToolRig::d(std::size_t number) const {
-  return std::to_integer<int>(memory_[2 * number]) | std::to_integer<int>(memory_[2 * number + 1]) << 8;
-}
-void MachineToolRig::set_d(std::size_t number, int value) {
-  memory_[2 * number] = static_cast<std::byte>(value & 0xFF);
-  memory_[2 * number + 1] = static_cast<std::byte>(value >> 8 & 0xFF);
+void MachineToolRig::set_d(std::uint16_t number, int value) {
+  devices_.set({DeviceKind::d, number}, static_cast<std::uint16_t>(value));
 }
 
 bool MachineToolRig::moves_nothing() const {

@@ -2,12 +2,13 @@
 // plays function by function.
 #pragma once
 
-#include <array>
 #include <chrono>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
 
+#include "emulator_models/device_memory.hpp"
 #include "emulator_models/plants/machine_tool_rules.hpp"
 #include "emulator_models/soft_plc/il_compiler.hpp"
 #include "emulator_models/soft_plc/il_machine.hpp"
@@ -38,10 +39,10 @@ class MachineToolRig {
   std::chrono::milliseconds select_tool(int tool);
   std::chrono::milliseconds set_speed(int speed);
 
-  [[nodiscard]] bool m(std::size_t number) const;
-  void set_m(std::size_t number, bool on);
-  [[nodiscard]] int d(std::size_t number) const;
-  void set_d(std::size_t number, int value);
+  [[nodiscard]] bool m(std::uint16_t number) const;
+  void set_m(std::uint16_t number, bool on);
+  [[nodiscard]] int d(std::uint16_t number) const;
+  void set_d(std::uint16_t number, int value);
   [[nodiscard]] bool on(machine_tool::Y output) const { return terminals.outputs.test(index_of(output)); }
   [[nodiscard]] bool on(machine_tool::X input) const { return terminals.inputs.test(index_of(input)); }
   [[nodiscard]] int alarm() const { return d(120); }
@@ -61,9 +62,7 @@ class MachineToolRig {
   soft_plc::IlMachine machine_;
   std::chrono::nanoseconds period_;
   MachineToolRules rules_;
-  std::array<std::byte, 32> inputs_{};
-  std::array<std::byte, 32> outputs_{};
-  std::array<std::byte, 512> memory_{};
+  DeviceMemory devices_{protocol::fx::Model::fx3u};
 };
 
 }  // namespace emulator_models

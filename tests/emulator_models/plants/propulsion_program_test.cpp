@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "emulator_models/fx_address_map.hpp"
 #include "emulator_models/soft_plc/il_compiler.hpp"
 #include "tests/emulator_models/plants/propulsion_rig.hpp"
 
@@ -31,19 +32,18 @@ struct PropulsionProgramTest : ::testing::Test {
 };
 
 TEST(PropulsionProgram, its_addresses_are_those_of_the_wiring) {
-  const auto program = soft_plc::compile(propulsion_program());
+  const FxAddressMap map{protocol::fx::Model::fx3u};
+  const auto program = soft_plc::compile(propulsion_program(), map);
   ASSERT_TRUE(program.has_value()) << to_string(program.error());
   EXPECT_TRUE(program->warnings.empty());
   const auto expect_at = [&](const char* name, wire::Device device) {
     const soft_plc::IlVariable* variable = program->find(name);
     ASSERT_NE(variable, nullptr) << name;
-    const bool is_word = device.kind == wire::DeviceKind::d;
-    const auto area = device.kind == wire::DeviceKind::x   ? soft_plc::Area::inputs
-                      : device.kind == wire::DeviceKind::y ? soft_plc::Area::outputs
-                                                           : soft_plc::Area::memory;
-    EXPECT_EQ(variable->area, area) << name;
-    EXPECT_EQ(variable->offset, is_word ? 2U * device.number : device.number / 8U) << name;
-    EXPECT_EQ(variable->bit_index, is_word ? 0 : device.number % 8) << name;
+    const auto place = map.device(to_string(device), variable->type);
+    ASSERT_TRUE(place.has_value()) << name << ": " << place.error();
+    EXPECT_EQ(variable->area, place->area) << name;
+    EXPECT_EQ(variable->offset, place->offset) << name;
+    EXPECT_EQ(variable->bit_index, place->bit_index) << name;
   };
   expect_at("LEVER_ASTERN", wire::lever_astern);
   expect_at("PUMP_2_PROTECTION", wire::pump_2_protection);

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "emulator_models/fx_address_map.hpp"
 #include "emulator_models/programs/propulsion_program.hpp"
 #include "emulator_models/soft_plc/il_compiler.hpp"
 
@@ -25,7 +26,8 @@ std::string program_without(std::string_view rule) {
 }
 
 PropulsionRig::PropulsionRig(std::string_view rule_left_out) {
-  const auto compiled = soft_plc::compile(program_without(rule_left_out));
+  const auto compiled =
+      soft_plc::compile(program_without(rule_left_out), FxAddressMap{protocol::fx::Model::fx3u});
   if (!compiled) {
     ADD_FAILURE() << compiled.error().place.line << ": " << compiled.error().message;
     return;
@@ -39,18 +41,15 @@ void PropulsionRig::scan() {
   now_ += scan_period;
   if (heartbeat) set_word(propulsion::pc_heartbeat, (word(propulsion::pc_heartbeat) + 1) % 1000);
   plant.advance(terminals, now_);
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    unsigned byte = 0;
-    for (std::size_t bit = 0; bit < 8; ++bit) byte |= unsigned{terminals.inputs[8 * i + bit]} << bit;
-    inputs_[i] = std::byte(byte);
-  }
-  std::memcpy(memory_.data() + 2 * propulsion::lever_word.number, terminals.analog_inputs.data(),
-              sizeof terminals.analog_inputs);
-  const auto done = machine_->run_scan({inputs_, outputs_, memory_}, now_.time_since_epoch());
+  copy_points(terminals.inputs, devices_.inputs());
+  std::memcpy(devices_.bytes().data() + devices_.place_of(propulsion::lever_word).byte_index,
+              terminals.analog_inputs.data(), sizeof terminals.analog_inputs);
+  const auto done =
+      machine_->run_scan({devices_.inputs(), devices_.outputs(), devices_.bytes()}, now_.time_since_epoch());
   ASSERT_TRUE(done.has_value()) << to_string(done.error());
-  for (std::size_t i = 0; i < Terminals::points_count; ++i)
-    terminals.outputs[i] = (std::to_integer<unsigned>(outputs_[i / 8]) >> (i % 8) & 1U) != 0;
-  std::memcpy(terminals.analog_outputs.data(), memory_.data() + 2 * propulsion::torque_word.number,
+  terminals.outputs = points_of(devices_.outputs());
+  std::memcpy(terminals.analog_outputs.data(),
+              devices_.bytes().data() + devices_.place_of(propulsion::torque_word).byte_index,
               sizeof terminals.analog_outputs);
   rules.observe(terminals, contract(), now_);
 }
@@ -84,25 +83,14 @@ void PropulsionRig::press_start() {
   plant.press_start(false);
 }
 
-bool PropulsionRig::on(propulsion::Device m) const {
-  return (std::to_integer<unsigned>(memory_[m.number / 8U]) >> (m.number % 8U) & 1U) != 0;
-}
+bool PropulsionRig::on(propulsion::Device m) const { return devices_.get(m) != 0; }
 
-int PropulsionRig::word(propulsion::Device d) const {
-  std::int16_t value = 0;
-  std::memcpy(&value, memory_.data() + 2 * d.number, sizeof value);
-  return value;
-}
+int PropulsionRig::word(propulsion::Device d) const { return static_cast<std::int16_t>(devices_.get(d)); }
 
-void PropulsionRig::set(propulsion::Device m, bool value) {
-  const std::byte bit{static_cast<unsigned char>(1U << (m.number % 8U))};
-  std::byte& byte = memory_[m.number / 8U];
-  byte = value ? byte | bit : byte & ~bit;
-}
+void PropulsionRig::set(propulsion::Device m, bool value) { devices_.set(m, value); }
 
 void PropulsionRig::set_word(propulsion::Device d, int value) {
-  const auto stored = static_cast<std::int16_t>(value);
-  std::memcpy(memory_.data() + 2 * d.number, &stored, sizeof stored);
+  devices_.set(d, static_cast<std::uint16_t>(value));
 }
 
 std::string PropulsionRig::broken_rules() const {

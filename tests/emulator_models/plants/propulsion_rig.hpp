@@ -2,7 +2,6 @@
 // the operator station, whose heartbeat goes on until it is stopped.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "emulator_models/device_memory.hpp"
 #include "emulator_models/plants/propulsion_plant.hpp"
 #include "emulator_models/plants/propulsion_rules.hpp"
 #include "emulator_models/soft_plc/il_machine.hpp"
@@ -56,9 +56,7 @@ class PropulsionRig {
 
   soft_plc::IlProgram program_;
   std::unique_ptr<soft_plc::IlMachine> machine_;
-  std::array<std::byte, 32> inputs_{};
-  std::array<std::byte, 32> outputs_{};
-  std::array<std::byte, 512> memory_{};
+  DeviceMemory devices_{protocol::fx::Model::fx3u};
   SteadyTime now_{std::chrono::hours{1}};
 };
 
