@@ -166,6 +166,13 @@ FxAddressMap::Place FxAddressMap::device(std::string_view upper_name, Elementary
   return tl::unexpected(name + " does not exist: " + model_has(kinds[kind], layout_.model()));
 }
 
+std::optional<FxAddressMap::Place> FxAddressMap::undeclared(std::string_view upper_name) const {
+  if (upper_name.empty() || std::string_view{"XYMSD"}.find(upper_name.front()) == std::string_view::npos ||
+      !number_after_letter(upper_name))
+    return std::nullopt;
+  return device(upper_name, upper_name.front() == 'D' ? ElementaryType::int_ : ElementaryType::boolean);
+}
+
 std::optional<tl::expected<PlcBlock, std::string>> FxAddressMap::block(std::string_view upper_name) const {
   if (upper_name.empty() || (upper_name.front() != 'T' && upper_name.front() != 'C')) return std::nullopt;
   const auto digits = number_after_letter(upper_name);

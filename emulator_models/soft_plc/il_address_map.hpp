@@ -43,6 +43,10 @@ class AddressMap {
   /// @param type  of the variable that is to lie there
   [[nodiscard]] virtual tl::expected<ValuePlace, std::string> device(std::string_view upper_name,
                                                                      ElementaryType type) const = 0;
+  /// An operand that is not declared, as X5 in LD X5.
+  /// @return nothing when it is the name of no device; the reason when it is, and the PLC has not this one
+  [[nodiscard]] virtual std::optional<tl::expected<ValuePlace, std::string>> undeclared(
+      std::string_view upper_name) const = 0;
   /// @return nothing when it is the name of no such block; the reason when it is, and the PLC has not this one
   [[nodiscard]] virtual std::optional<tl::expected<PlcBlock, std::string>> block(
       std::string_view upper_name) const = 0;

@@ -23,6 +23,10 @@ class PlainAddressMap final : public AddressMap {
     return tl::unexpected(std::string{upper_name} +
                           " is no address: AT is followed by an address such as %IX0.0 or %MW5");
   }
+  [[nodiscard]] std::optional<tl::expected<ValuePlace, std::string>> undeclared(
+      std::string_view) const override {
+    return std::nullopt;
+  }
   [[nodiscard]] std::optional<tl::expected<PlcBlock, std::string>> block(std::string_view) const override {
     return std::nullopt;
   }

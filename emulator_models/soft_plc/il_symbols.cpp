@@ -33,15 +33,22 @@ class Layout {
       if (retained) program_.retained_bytes = program_.initial_variables.size();
     }
     for (const Statement& statement : tree.statements) {
-      for (const Operand& operand : statement.operands) add_named_block(operand);
-      for (const NamedArgument& argument : statement.arguments) add_named_block(argument.operand);
+      if (statement.operation.starts_with("JMP")) continue;  // its operand is a label
+      for (const Operand& operand : statement.operands) add_undeclared(operand);
+      for (const NamedArgument& argument : statement.arguments) add_undeclared(argument.operand);
     }
     return std::move(symbols_);
   }
 
  private:
-  void add_named_block(const Operand& operand) {
+  void add_undeclared(const Operand& operand) {
     if (operand.kind != Operand::Kind::name || symbols_.contains(operand.text)) return;
+    if (const auto device = map_.undeclared(operand.text)) {
+      if (!*device) fail(operand.place, device->error());
+      note_need(**device, program_);
+      symbols_.emplace(operand.text, **device);
+      return;
+    }
     const auto block = map_.block(operand.text);
     if (!block) return;
     if (!*block) fail(operand.place, block->error());

@@ -25,8 +25,8 @@ using Symbol = std::variant<ValuePlace, InstancePlace>;
 /// By name in capitals.
 using SymbolTable = std::unordered_map<std::string, Symbol>;
 
-/// Gives every variable and instance its place, and the program its initial variables. Blocks that the PLC has by
-/// itself get an instance when a statement names them.
+/// Gives every variable and instance its place, and the program its initial variables. Devices and blocks that the PLC
+/// has by itself become symbols when a statement names them.
 /// Throws IlFailure: a doubled name, an unknown type, a value or an address that does not fit.
 [[nodiscard]] SymbolTable lay_out(const SyntaxTree& tree, const AddressMap& map, IlProgram& program);
 

@@ -124,7 +124,63 @@ TEST(FxInstructionList, a_program_cannot_write_inputs_and_what_the_plc_itself_wr
   EXPECT_EQ(refusal("x AT D8000 : INT; y AT M8034 : BOOL;", "LD 300\nST x\nLD TRUE\nST y"), "compiled");
 }
 
+TEST(FxInstructionList, devices_are_operands_without_a_declaration_bits_bool_and_registers_int) {
+  FxRig rig{"",
+            "LD X5\nANDN M100\nST Y12\nS s0\nLD D7999\nADD -5\nST D6\nLT 0\nST M7679\n"
+            "LD M8000\nAND( X6\nOR X7\n)\nST M1"};
+  rig.set("X5", 1);
+  rig.set("X7", 1);
+  rig.set("M8000", 1);
+  rig.set("D7999", 3);
+  rig.scan();
+  EXPECT_EQ(rig.get("Y12"), 1U);
+  EXPECT_EQ(rig.get("S0"), 1U);
+  EXPECT_EQ(rig.get("D6"), 0xFFFEU);
+  EXPECT_EQ(rig.get("M7679"), 1U);
+  EXPECT_EQ(rig.get("M1"), 1U);
+  rig.set("M100", 1);
+  rig.scan();
+  EXPECT_EQ(rig.get("Y12"), 0U);
+}
+
+TEST(FxInstructionList, undeclared_devices_are_parameters_of_blocks_and_functions) {
+  FxRig rig{"t : TON;", "CAL t(IN := X0, PT := T#20ms, Q => Y0)\nLD D0\nLIMIT D1, D2\nST D3"};
+  rig.set("X0", 1);
+  rig.set("D0", 1);
+  rig.set("D1", 7);
+  rig.set("D2", 5);
+  for (int i = 0; i < 3; ++i) rig.scan();
+  EXPECT_EQ(rig.get("Y0"), 1U);
+  EXPECT_EQ(rig.get("D3"), 5U);
+}
+
+TEST(FxInstructionList, an_undeclared_device_is_refused_at_its_place_as_a_declared_one_is) {
+  EXPECT_EQ(refusal("", "LD X20", Model::fx1s), "2:4: X20 does not exist: FX1S has X0 to X17");
+  EXPECT_EQ(refusal("", "LD TRUE\nAND M99999"),
+            "3:5: M99999 does not exist: FX3U has M0 to M7679 and M8000 to M8511");
+  EXPECT_EQ(refusal("", "LD Y8"), "2:4: Y8: X and Y are numbered in octal: digits 0 to 7 only");
+  EXPECT_EQ(refusal("", "LD TRUE\nST X5"),
+            "3:1: X5 is a physical input and cannot be written by the program");
+  for (const char* const write : {"ST M8002", "S M8013", "R X0"})
+    EXPECT_NE(refusal("", "LD TRUE\n" + std::string{write}).find("cannot be written"), std::string::npos);
+  EXPECT_NE(refusal("", "LD 1\nST D8010").find("the PLC itself writes"), std::string::npos);
+  EXPECT_EQ(refusal("", "LD D5\nAND 1").substr(0, 4), "3:1:");
+  EXPECT_NE(refusal("", "LD T5").find("name one of its values"), std::string::npos);
+  EXPECT_NE(refusal("", "LD D").find("not declared"), std::string::npos);
+  EXPECT_NE(refusal("", "LD X5.Q").find("no function block"), std::string::npos);
+  EXPECT_NE(refusal("", "CAL X5").find("no instance"), std::string::npos);
+}
+
+TEST(FxInstructionList, labels_and_declared_names_hide_devices) {
+  FxRig rig{"m1 : BOOL;", "LD X0\nJMPC M9999\nLD TRUE\nST m1\nLD m1\nST Y0\nM9999:\nLD TRUE\nST Y1"};
+  rig.scan();
+  EXPECT_EQ(rig.get("M1"), 0U);
+  EXPECT_EQ(rig.get("Y0"), 1U);
+  EXPECT_EQ(rig.get("Y1"), 1U);
+}
+
 TEST(FxInstructionList, the_soft_plc_without_fx_knows_no_devices) {
+  EXPECT_EQ(soft_plc::refusal_of("", "LD X5").place, "2:4");
   EXPECT_EQ(soft_plc::refusal_of("x AT X5 : BOOL;", "LD x").place, "1:20");
   EXPECT_EQ(soft_plc::refusal_of("", "CAL T5").place, "2:5");
 }
