@@ -15,6 +15,7 @@
 #include <sys/prctl.h>
 #include <CLI/CLI.hpp>
 
+#include "emulator_models/configured_archive.hpp"
 #include "emulator_models/configured_port.hpp"
 #include "emulator_models/cycle_report.hpp"
 #include "emulator_models/emulator_handler.hpp"
@@ -134,7 +135,7 @@ class Watcher {
 class ConfiguredEmulator {
  public:
   explicit ConfiguredEmulator(const ConfiguredEmulatorOptions& options)
-      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_} {}
+      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_, open_archive} {}
 
   int run(const EmulatorOptions& port) {
     if (const std::string refusal = load(); !refusal.empty()) {
@@ -154,6 +155,11 @@ class ConfiguredEmulator {
   }
 
  private:
+  static tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> open_archive(
+      const soft_plc::PlcConfiguration& configuration, std::chrono::nanoseconds power_up) {
+    return open_configured_archive(configuration, power_up, complain);
+  }
+
   /// @return why the file is refused; empty if it is in use
   std::string load() {
     const auto text = soft_plc::read_file(options_.path);
@@ -167,8 +173,7 @@ class ConfiguredEmulator {
     say(fmt::format(
         "{}: {} cycles {}", options_.path, configuration.cycles.size(),
         configuration.threading == soft_plc::PlcThreading::one ? "on one thread" : "on a thread for each"));
-    if (!configuration.archive.path.empty())
-      complain("the archive of the configuration is not written in this mode");
+    if (!configuration.archive.path.empty()) say("archive: " + configuration.archive.path);
   }
 
   void watch() {

@@ -6,13 +6,23 @@
 namespace emulator_models::soft_plc {
 namespace {
 
-bool is_same(const ConfiguredDriver& a, const ConfiguredDriver& b) {
+bool is_same_driver(const ConfiguredDriver& a, const ConfiguredDriver& b) {
   return a.kind == b.kind && a.config.name == b.config.name && a.config.inputs == b.config.inputs &&
          a.config.period == b.config.period && a.config.late_after == b.config.late_after &&
          a.config.failures_max == b.config.failures_max &&
          a.config.stale_is_fault == b.config.stale_is_fault && a.config.stale_bit == b.config.stale_bit &&
          a.fixed_inputs == b.fixed_inputs;
 }
+
+bool is_same(const ArchiveSettings& a, const ArchiveSettings& b) {
+  return a.path == b.path && a.rows_max == b.rows_max && a.signals == b.signals;
+}
+
+/// A PLC with what watches it: whoever keeps the PLC keeps both.
+struct WatchedPlc {
+  std::unique_ptr<PlcObserver> observer;
+  std::unique_ptr<SoftPlc> plc;
+};
 
 }  // namespace
 
@@ -29,14 +39,17 @@ std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfigu
     if (a.sends != b.sends) return "what cycle " + a.name + " sends";
     if (a.config.scan.outputs_in_stop != b.config.scan.outputs_in_stop) return "outputs_in_stop";
   }
-  if (!std::ranges::equal(old.drivers, next.drivers, is_same)) return "the drivers";
+  if (!std::ranges::equal(old.drivers, next.drivers, is_same_driver)) return "the drivers";
+  if (!is_same(old.archive, next.archive)) return "the archive";
   return {};
 }
 
-ConfiguredPlc::ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock)
+ConfiguredPlc::ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock,
+                             ObserverFactory observers)
     : file_name_{std::move(file_name)},
       reader_{std::move(reader)},
       factory_{std::move(factory)},
+      observers_{std::move(observers)},
       clock_{clock} {}
 
 ConfiguredPlc::~ConfiguredPlc() {
@@ -65,6 +78,11 @@ std::string ConfiguredPlc::needs_stop(const std::string& change) const {
          ", which cannot be done in RUN; order STOP, load it again, and order RUN";
 }
 
+std::string ConfiguredPlc::refusal_of_archive(const ArchiveSettings& archive, const std::string& why) const {
+  return file_name_ + ":" + std::to_string(archive.path_place.line) + ":" +
+         std::to_string(archive.path_place.column) + ": " + why;
+}
+
 tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next,
                                                      const std::string& change) {
   SoftPlcSetup setup;
@@ -83,14 +101,24 @@ tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& nex
                             driver.kind + "\" in this program"};
     setup.drivers.push_back({driver.config, std::move(made)});
   }
-  auto plc = SoftPlc::make(std::move(setup), clock_.now());
+  const std::chrono::nanoseconds power_up = clock_.now();
+  auto watched = std::make_shared<WatchedPlc>();
+  if (observers_) {
+    auto observer = observers_(next, power_up);
+    if (!observer) return tl::unexpected{refusal_of_archive(next.archive, observer.error())};
+    watched->observer = std::move(*observer);
+    setup.observer = watched->observer.get();
+  }
+  auto plc = SoftPlc::make(std::move(setup), power_up);
   if (!plc) return tl::unexpected{file_name_ + ": " + plc.error()};
+  watched->plc = std::move(*plc);
   // Meanwhile somebody may have ordered RUN.
   if (plc_ && !plc_->retire()) return tl::unexpected{needs_stop(change)};
   if (plc_) plc_->gateway().close();
   threads_.reset();
   programs_ = std::move(programs);
-  plc_ = std::move(*plc);
+  SoftPlc* const built = watched->plc.get();
+  plc_ = std::shared_ptr<SoftPlc>{std::move(watched), built};
   threads_ = std::make_unique<PlcThreads>(*plc_, clock_, next.threading, next.realtime);
   return {};
 }

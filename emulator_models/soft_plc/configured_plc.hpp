@@ -1,7 +1,7 @@
 // A soft PLC as its configuration says, and the change to another configuration while it works.
 //
-// While in RUN may change: period, watchdog's limit and overrun rule of a cycle, limits of the gateway, archive and real-time
-// data settings. They count from the next scan of each cycle on. All else needs STOP: then the PLC is built anew.
+// While in RUN may change: period, watchdog's limit and overrun rule of a cycle, limits of the gateway, real-time data
+// settings. They count from the next scan of each cycle on. All else needs STOP: then the PLC is built anew.
 //
 // Invariants
 //   I1  a configuration that is bad, or that needs a STOP which is not there, changes nothing: the old one goes on.
@@ -21,11 +21,18 @@
 
 #include "emulator_models/soft_plc/il_cycle.hpp"
 #include "emulator_models/soft_plc/plc_configuration.hpp"
+#include "emulator_models/soft_plc/plc_observer.hpp"
 
 namespace emulator_models::soft_plc {
 
 /// @return a driver of the kind, or nullptr if there is no such kind
 using DriverFactory = std::function<std::unique_ptr<IoDriver>(const ConfiguredDriver&)>;
+
+/// @param power_up  when the PLC that is to be watched begins, by its clock
+/// @return          an observer that goes with the PLC, when no cycle runs any more; nullptr: nobody watches; or what is
+///                  wrong with the archive that is asked for
+using ObserverFactory = std::function<tl::expected<std::unique_ptr<PlcObserver>, std::string>(
+    const PlcConfiguration&, std::chrono::nanoseconds power_up)>;
 
 /// @return what has changed that needs a STOP, "the program of cycle fast"; empty if nothing
 [[nodiscard]] std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfiguration& next);
@@ -34,7 +41,9 @@ class ConfiguredPlc {
  public:
   /// Without a PLC until the first reload.
   /// @param file_name  stands in front of errors; programs are looked for in its folder
-  ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock);
+  /// @param observers  asked once for each PLC that is built; empty: nobody watches
+  ConfiguredPlc(std::string file_name, FileReader reader, DriverFactory factory, PlcClock& clock,
+                ObserverFactory observers = {});
   ConfiguredPlc(const ConfiguredPlc&) = delete;
   ConfiguredPlc& operator=(const ConfiguredPlc&) = delete;
   ~ConfiguredPlc();
@@ -53,12 +62,14 @@ class ConfiguredPlc {
 
  private:
   [[nodiscard]] std::string needs_stop(const std::string& change) const;
+  [[nodiscard]] std::string refusal_of_archive(const ArchiveSettings& archive, const std::string& why) const;
   [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next,
                                                       const std::string& change);
 
   const std::string file_name_;
   const FileReader reader_;
   const DriverFactory factory_;
+  const ObserverFactory observers_;
   PlcClock& clock_;
   mutable std::mutex mutex_;
   // All guarded by mutex_.

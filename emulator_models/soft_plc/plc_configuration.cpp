@@ -11,6 +11,7 @@
 #include "emulator_models/soft_plc/il_address.hpp"
 #include "emulator_models/soft_plc/il_compiler.hpp"
 #include "emulator_models/soft_plc/il_cycle.hpp"
+#include "emulator_models/soft_plc/signal_recorder.hpp"
 #include "emulator_models/soft_plc/toml_table.hpp"
 
 namespace emulator_models::soft_plc {
@@ -20,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr std::int64_t hour_ms = 3'600'000;
 constexpr std::size_t drivers_max = 16;
-constexpr std::size_t signals_max = 1024;
+constexpr std::size_t realtime_signals_max = 1024;
 
 /// @return { first_byte, bytes } or { first_word, words } of the table under the key, in bytes
 Section section_of(TomlTable& table, const std::string& key, const std::string& unit, std::size_t unit_bytes,
@@ -37,15 +38,33 @@ Section section_of(TomlTable& table, const std::string& key, const std::string& 
   return section;
 }
 
-std::vector<std::string> addresses_of(TomlTable& table, std::string_view key) {
+std::vector<std::string> addresses_of(TomlTable& table, std::string_view key, std::size_t addresses_max) {
   std::vector<std::string> addresses = table.texts(key);
-  if (addresses.size() > signals_max)
-    refuse(table.region(key), fmt::format("{} names more than {} addresses", key, signals_max));
+  if (addresses.size() > addresses_max)
+    refuse(table.region(key), fmt::format("{} names more than {} addresses", key, addresses_max));
   for (const std::string& address : addresses) {
     if (const auto parsed = parse_address(address); !parsed)
       refuse(table.region(key), fmt::format("{}: {}", address, parsed.error()));
   }
   return addresses;
+}
+
+ArchiveSettings archive_of(TomlTable& table, const std::filesystem::path& folder) {
+  ArchiveSettings archive;
+  if (table.has("path")) {
+    archive.path = (folder / table.required_text("path")).string();
+    const toml::source_position& place = table.region("path").begin;
+    archive.path_place = {place.line, place.column};
+  }
+  archive.rows_max = table.integer("rows_max", archive.rows_max, 1000, 1'000'000'000);
+  archive.signals = addresses_of(table, "signals", SignalRecorder::signals_max);
+  for (const std::string& address : archive.signals) {
+    if (parse_address(address)->type != ElementaryType::boolean)
+      refuse(table.region("signals"),
+             fmt::format("{} is no bit; the archive has changes of bits, as \"%QX0.3\"", address));
+  }
+  table.refuse_the_rest();
+  return archive;
 }
 
 class Parser {
@@ -84,13 +103,9 @@ class Parser {
     gateway.refuse_the_rest();
 
     TomlTable archive = file.table("archive");
-    result_.archive.path = archive.text("path", {});
-    result_.archive.rows_max =
-        static_cast<std::uint64_t>(archive.integer("rows_max", 1'000'000, 1000, 1'000'000'000));
-    result_.archive.signals = addresses_of(archive, "signals");
-    archive.refuse_the_rest();
+    result_.archive = archive_of(archive, folder_);
     TomlTable realtime_data = file.table("realtime_data");
-    result_.realtime_signals = addresses_of(realtime_data, "signals");
+    result_.realtime_signals = addresses_of(realtime_data, "signals", realtime_signals_max);
     realtime_data.refuse_the_rest();
     file.refuse_the_rest();
     return std::move(result_);

@@ -39,11 +39,12 @@ struct ConfiguredDriver {
   std::vector<std::byte> fixed_inputs{};  ///< of kind "simulated"; at most as many as config.inputs has
 };
 
-/// Of the archive, which is built elsewhere.
+/// Of the archive, which is built elsewhere (configured_plc.hpp).
 struct ArchiveSettings {
   std::string path;  ///< empty: no archive
-  std::uint64_t rows_max = 1'000'000;
-  std::vector<std::string> signals;  ///< addresses, as "%QX0.3"
+  SourcePlace path_place;
+  std::int64_t rows_max = 1'000'000;
+  std::vector<std::string> signals;  ///< addresses of bits, as "%QX0.3"
 };
 
 struct PlcConfiguration {

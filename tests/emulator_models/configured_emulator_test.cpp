@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <unistd.h>
 
+#include "tests/emulator_models/archive/archive_rig.hpp"
 #include "tests/emulator_models/emulator_process.hpp"
 #include "tests/protocol/fx/worked_examples.hpp"
 
@@ -138,6 +140,42 @@ TEST_F(ConfiguredEmulator, the_filling_station_of_the_example_fills_bottles) {
   emulator.send_signal(SIGTERM);
   EXPECT_EQ(emulator.wait_for_exit(), 0);
   EXPECT_EQ(emulator.printed().find("fault"), std::string::npos) << emulator.printed();
+}
+
+TEST_F(ConfiguredEmulator, the_archive_of_the_configuration_has_what_both_cycles_did) {
+  write("blinks.il", "PROGRAM blinks\nVAR y AT %QX0.3 : BOOL; END_VAR\nLDN y\nST y\nEND_PROGRAM\n");
+  for (const std::string threads : {"one", "per-cycle"}) {
+    configure("blinks.il", threads);
+    const std::string name = threads + ".archive";
+    std::ofstream{path, std::ios::app} << "[archive]\npath = \"" << name
+                                       << "\"\nrows_max = 1000\nsignals = [\"%QX0.3\"]\n";
+    EmulatorProcess emulator{{"--config", path, "--pty"}};
+    const SerialLine line{emulator.wait_for_line("pty: ")};
+    wait_until_not_zero(line, "02 30 31 30 30 30 30 32 03 35 36");
+    archive::OtherConnection query{folder / name};
+    const char* const blinked =
+        "SELECT count(*) > 10 FROM signal_changes WHERE cycle = 1 AND signal = '%QX0.3'";
+    for (int looks = 0; looks < 1000 && query(blinked) != "1 "; ++looks)
+      std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    EXPECT_EQ(query(blinked), "1 ") << "ten seconds later";
+    emulator.send_signal(SIGTERM);
+    EXPECT_EQ(emulator.wait_for_exit(), 0);
+    EXPECT_NE(emulator.printed().find("rows stored, 0 records lost"), std::string::npos)
+        << emulator.printed();
+    EXPECT_EQ(query("SELECT DISTINCT cycle FROM scans WHERE scans_count > 0 ORDER BY cycle"), "0 1 ");
+    EXPECT_EQ(query("SELECT cycle, what FROM history WHERE event = 'mode' AND what = 'RUN' ORDER BY cycle"),
+              "0 RUN 1 RUN ");
+    EXPECT_EQ(query("SELECT DISTINCT cycle FROM signal_changes"), "1 ");
+  }
+}
+
+TEST_F(ConfiguredEmulator, an_archive_that_cannot_be_had_refuses_the_configuration_at_its_line) {
+  configure("good.il");
+  std::ofstream{path, std::ios::app} << "[archive]\npath = \"missing/plc.archive\"\n";
+  EmulatorProcess emulator{{"--config", path}};
+  EXPECT_EQ(emulator.wait_for_exit(), 2);
+  EXPECT_NE(emulator.printed().find(path + ":12:8: "), std::string::npos) << emulator.printed();
+  EXPECT_NE(emulator.printed().find("missing/plc.archive"), std::string::npos) << emulator.printed();
 }
 
 TEST_F(ConfiguredEmulator, bad_usage_and_bad_files_are_2) {

@@ -67,6 +67,8 @@ TEST(PlcConfiguration, each_mistake_is_refused_with_its_place_and_the_way_out) {
             0U);
   EXPECT_EQ(refusal(good + "= 3\n").rfind("dir/plc.toml:7:1: ", 0), 0U);
   EXPECT_EQ(refusal(good + "[archive]\nsignals = [\"%QZ1\"]\n").rfind("dir/plc.toml:8:11: %QZ1: ", 0), 0U);
+  EXPECT_EQ(refusal(good + "[archive]\nsignals = [\"%MW9\"]\n"),
+            "dir/plc.toml:8:11: %MW9 is no bit; the archive has changes of bits, as \"%QX0.3\"");
   EXPECT_EQ(refusal("[plc]\n").rfind("dir/plc.toml:1:1: a PLC has 1 to 32 cycles", 0), 0U);
 }
 
@@ -147,10 +149,26 @@ TEST(PlcConfiguration, all_that_has_a_bound_is_refused_beyond_it) {
   std::string drivers;
   for (int i = 0; i < 17; ++i) drivers += driver(std::to_string(i), {});
   EXPECT_NE(refusal(good + drivers).find("more than 16 drivers"), std::string::npos);
-  std::string signals = "[archive]\nsignals = [";
-  for (int i = 0; i < 1025; ++i) signals += "\"%QX0.0\", ";
-  EXPECT_NE(refusal(good + signals + "]\n").find("more than 1024 addresses"), std::string::npos);
+  const auto signals = [](const std::string& table, int count) {
+    std::string text = good + "[" + table + "]\nsignals = [";
+    for (int i = 0; i < count; ++i) text += "\"%QX0.0\", ";
+    return text + "]\n";
+  };
+  EXPECT_EQ(refusal(signals("archive", 256)), "taken");
+  EXPECT_NE(refusal(signals("archive", 257)).find("more than 256 addresses"), std::string::npos);
+  EXPECT_EQ(refusal(signals("realtime_data", 1024)), "taken");
+  EXPECT_NE(refusal(signals("realtime_data", 1025)).find("more than 1024 addresses"), std::string::npos);
   EXPECT_EQ(refusal(good + "priority = 1\n"), "dir/plc.toml:7:12: priority must be an integer from 0 to 0");
+}
+
+TEST(PlcConfiguration, the_archive_lies_beside_the_file_or_where_its_whole_path_says) {
+  const auto path = [](const std::string& given) {
+    return parse_configuration(good + "[archive]\npath = \"" + given + "\"\n", "dir/plc.toml", read_source)
+        .value()
+        .archive.path;
+  };
+  EXPECT_EQ(path("history.sqlite"), "dir/history.sqlite");
+  EXPECT_EQ(path("/var/history.sqlite"), "/var/history.sqlite");
 }
 
 TEST(PlcConfiguration, no_cut_of_a_good_file_does_harm) {
@@ -240,6 +258,8 @@ TEST(ConfiguredPlc, each_change_that_needs_STOP_is_named) {
   EXPECT_EQ(change(good, replaced(good, "[plc]\n", "[plc]\noutputs_in_stop = \"hold\"\n")),
             "outputs_in_stop");
   EXPECT_EQ(change(good + driver("d", {}), good + driver("d", "late_ms = 7\n")), "the drivers");
+  for (const char* const archive : {"path = \"a\"", "rows_max = 2000", "signals = [\"%QX0.0\"]"})
+    EXPECT_EQ(change(good, good + "[archive]\n" + archive + "\n"), "the archive") << archive;
   auto other = parse_configuration(good, "dir/plc.toml", read_source).value();
   other.cycles[0].source += ' ';
   EXPECT_EQ(change_that_needs_stop(parse_configuration(good, "dir/plc.toml", read_source).value(), other),
@@ -286,6 +306,63 @@ TEST(ConfiguredPlc, a_RUN_that_comes_in_the_middle_of_a_load_prevents_it) {
   EXPECT_EQ(configured.plc(), plc);
   EXPECT_FALSE(configured.reload(good + driver("d", {})));
   EXPECT_EQ(made_count, 1) << "a field has one driver at a time";
+}
+
+class CountingObserver final : public PlcObserver {
+ public:
+  CountingObserver(std::atomic<int>& alive, std::atomic<int>& steps) : alive_{alive}, steps_{steps} {
+    ++alive_;
+  }
+  CountingObserver(const CountingObserver&) = delete;
+  CountingObserver& operator=(const CountingObserver&) = delete;
+  ~CountingObserver() override { --alive_; }
+  void step_ordered(std::size_t, const ScanTask&, const CycleImage&,
+                    std::chrono::nanoseconds) noexcept override {
+    ++steps_;
+  }
+  void gateway_writes(std::size_t, const GatewayItem&) noexcept override {}
+
+ private:
+  std::atomic<int>& alive_;
+  std::atomic<int>& steps_;
+};
+
+TEST(ConfiguredPlc, each_PLC_has_an_observer_of_its_own_that_lives_as_long_as_anybody_keeps_the_PLC) {
+  SteadyPlcClock clock;
+  std::atomic<int> alive{0};
+  std::atomic<int> steps{0};
+  {
+    ConfiguredPlc configured{"dir/plc.toml", read_source, [](const ConfiguredDriver&) { return nullptr; },
+                             clock,
+                             [&](const PlcConfiguration&, std::chrono::nanoseconds) {
+                               return std::make_unique<CountingObserver>(alive, steps);
+                             }};
+    ASSERT_TRUE(configured.reload(good));
+    auto first = configured.plc();
+    while (steps == 0) std::this_thread::yield();
+    ASSERT_TRUE(configured.reload(replaced(good, "\"a\"", "\"c\"")));
+    EXPECT_EQ(alive, 2);
+    first.reset();
+    EXPECT_EQ(alive, 1);
+  }
+  EXPECT_EQ(alive, 0);
+}
+
+TEST(ConfiguredPlc, an_archive_that_cannot_be_had_is_refused_with_its_place_and_changes_nothing) {
+  SteadyPlcClock clock;
+  ConfiguredPlc configured{
+      "dir/plc.toml", read_source, [](const ConfiguredDriver&) { return nullptr; }, clock,
+      [](const PlcConfiguration& asked,
+         std::chrono::nanoseconds) -> tl::expected<std::unique_ptr<PlcObserver>, std::string> {
+        if (asked.archive.path.empty()) return nullptr;
+        return tl::unexpected{asked.archive.path + ": no such folder"};
+      }};
+  ASSERT_TRUE(configured.reload(good));
+  const auto before = configured.plc();
+  EXPECT_EQ(configured.reload(good + "[archive]\nrows_max = 1000\npath = \"/none/a\"\n").error(),
+            "dir/plc.toml:9:8: /none/a: no such folder");
+  EXPECT_EQ(configured.plc(), before);
+  EXPECT_TRUE(before->order_run(StartKind::cold));
 }
 
 TEST(ConfiguredPlc, a_driver_of_an_unknown_kind_is_refused) {
