@@ -14,13 +14,14 @@ using protocol::fx::AddressSpace;
 using protocol::fx::ByteLocation;
 using protocol::fx::Device;
 using protocol::fx::DeviceKind;
+using protocol::fx::Model;
 
 static_assert(std::endian::native == std::endian::little, "words are copied, not assembled byte by byte");
 
 /// Bytes that `count` devices of a kind from number 0 on take.
 std::size_t bytes_of(DeviceKind kind, std::size_t count) noexcept {
   constexpr std::size_t narrow_counters_count = protocol::fx::first_wide_counter;
-  switch (protocol::fx::width_bits({kind, 0})) {
+  switch (protocol::fx::width_bits_of({kind, 0})) {
     case 1:
       return (count + 7) / 8;
     default:
@@ -57,12 +58,14 @@ DeviceMemory::DeviceMemory(protocol::fx::Model model) : model_{model} {
 }
 
 DeviceMemory::Place DeviceMemory::place_of(Device device) const noexcept {
-  PLC_CHECK(protocol::fx::exists(device, model_));
   const Block& home = block(device.kind);
-  const std::size_t index = device.number < home.plain_count ? device.number
-                                                             : std::size_t{home.plain_count} + device.number -
-                                                                   protocol::fx::first_special_number;
-  if (protocol::fx::width_bits(device) == 1)
+  const unsigned special_index = unsigned{device.number} - protocol::fx::first_special_number;
+  const bool is_plain = device.number < home.plain_count;
+  PLC_CHECK(is_plain || special_index < home.special_count);
+  // The only gap within a block: the counters of an FX1S.
+  PLC_CHECK(model_ != Model::fx1s || protocol::fx::exists(device, model_));
+  const std::size_t index = is_plain ? device.number : std::size_t{home.plain_count} + special_index;
+  if (protocol::fx::width_bits_of(device) == 1)
     return {static_cast<std::uint32_t>(home.offset + index / 8), static_cast<std::uint8_t>(index % 8)};
   return {static_cast<std::uint32_t>(home.offset + bytes_of(device.kind, index)), 0};
 }
@@ -76,12 +79,12 @@ std::uint32_t DeviceMemory::load(Place place, unsigned width_bits) const noexcep
 }
 
 std::uint32_t DeviceMemory::get(Device device) const noexcept {
-  return load(place_of(device), protocol::fx::width_bits(device));
+  return load(place_of(device), protocol::fx::width_bits_of(device));
 }
 
 void DeviceMemory::set(Device device, std::uint32_t value) noexcept {
   const Place place = place_of(device);
-  const unsigned width = protocol::fx::width_bits(device);
+  const unsigned width = protocol::fx::width_bits_of(device);
   std::byte* const to = bytes_.data() + place.byte_index;
   if (width == 1) {
     const std::byte bit = std::byte{1} << place.bit_index;
@@ -94,7 +97,7 @@ void DeviceMemory::set(Device device, std::uint32_t value) noexcept {
 std::optional<std::byte> DeviceMemory::read_byte(std::uint16_t address, AddressSpace space) const noexcept {
   const auto place = protocol::fx::locate_byte(address, model_, space);
   if (!place) return std::nullopt;
-  if (protocol::fx::width_bits(place->device) != 1)
+  if (protocol::fx::width_bits_of(place->device) != 1)
     return static_cast<std::byte>(get(place->device) >> (8U * place->byte_in_device));
   unsigned byte = 0;
   for (unsigned bit = 0; bit < 8; ++bit) {
@@ -108,7 +111,7 @@ bool DeviceMemory::write_byte(std::uint16_t address, AddressSpace space, std::by
   const auto place = protocol::fx::locate_byte(address, model_, space);
   if (!place) return false;
   const std::uint32_t byte = std::to_integer<std::uint32_t>(value);
-  if (protocol::fx::width_bits(place->device) != 1) {
+  if (protocol::fx::width_bits_of(place->device) != 1) {
     const unsigned shift = 8U * place->byte_in_device;
     set(place->device, (get(place->device) & ~(0xFFU << shift)) | byte << shift);
     return true;

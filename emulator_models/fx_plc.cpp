@@ -125,8 +125,10 @@ void FxPlc::set_period() noexcept {
 }
 
 void FxPlc::show_times(bool power_up) noexcept {
-  set_clock_flags(memory(), now_ - *power_up_);
-  // Nobody else can write the calendar, and to work it out takes longer than all else between two scans.
+  // Nobody else can write clock flags and calendar, and to work them out takes longer than all else between two scans.
+  const nanoseconds since_power_up = now_ - *power_up_;
+  const std::int64_t clock_step = since_power_up / clock_flags_step;
+  if (std::exchange(clock_step_, clock_step) != clock_step) set_clock_flags(memory(), since_power_up);
   const auto second = std::chrono::floor<std::chrono::seconds>(wall_);
   if (std::exchange(calendar_second_, second) != second) set_calendar(memory(), second);
   const soft_plc::ScanTimes& times = task_.scan_times();

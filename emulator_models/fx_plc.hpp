@@ -109,6 +109,7 @@ class FxPlc final : private soft_plc::ScanProgram {
   WallTime wall_{};
   std::optional<SteadyTime> power_up_;
   std::chrono::nanoseconds watchdog_limit_{0};
+  std::optional<std::int64_t> clock_step_;                   ///< that M8011 to M8014 show
   std::optional<std::chrono::sys_seconds> calendar_second_;  ///< that D8013 to D8019 show
   std::size_t analog_inputs_index_ = 0;                      ///< of D200 and of D210 in the memory's bytes
   std::size_t analog_outputs_index_ = 0;

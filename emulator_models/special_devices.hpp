@@ -39,6 +39,8 @@ void set_power_up_values(DeviceMemory& memory) noexcept;
 /// a byte: 0AH in STOP, 05H in the first scan, 09H in RUN.
 void set_run_flags(DeviceMemory& memory, RunMode mode) noexcept;
 
+/// They change at multiples of this only.
+inline constexpr std::chrono::milliseconds clock_flags_step{5};
 /// M8011 to M8014: square waves of 10 ms, 100 ms, 1 s and 1 min; off in the first half of each period.
 /// @param since_power_up  not negative
 void set_clock_flags(DeviceMemory& memory, std::chrono::nanoseconds since_power_up) noexcept;

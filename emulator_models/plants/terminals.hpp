@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <type_traits>
 
 namespace emulator_models {
 
@@ -25,26 +26,22 @@ struct Terminals {
 
 /// Points as a process image has them: eight to a byte, the lowest number in bit 0.
 using TerminalPoints = std::bitset<Terminals::points_count>;
-static_assert(std::endian::native == std::endian::little, "words of points are copied as bytes");
+static_assert(
+    std::endian::native == std::endian::little && std::is_trivially_copyable_v<TerminalPoints> &&
+        sizeof(TerminalPoints) == Terminals::points_count / 8,
+    "points are copied as the words that the bitset consists of, the lowest first: shifting them into "
+    "place would take a third of an empty scan");
 
 /// @param image  at most 32 bytes; points beyond it are left out
 inline void copy_points(const TerminalPoints& points, std::span<std::byte> image) noexcept {
-  constexpr TerminalPoints word{~std::uint64_t{0}};
-  for (std::size_t first = 0; first < image.size(); first += 8) {
-    const std::uint64_t bits = ((points >> 8 * first) & word).to_ullong();
-    std::memcpy(image.data() + first, &bits, std::min<std::size_t>(8, image.size() - first));
-  }
+  std::memcpy(image.data(), &points, std::min(image.size(), sizeof points));
 }
 
 /// @param image  at most 32 bytes; points beyond it are off
 inline TerminalPoints points_of(std::span<const std::byte> image) noexcept {
-  TerminalPoints points;
-  for (std::size_t first = 0; first < image.size(); first += 8) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, image.data() + first, std::min<std::size_t>(8, image.size() - first));
-    points |= TerminalPoints{bits} << 8 * first;
-  }
-  return points;
+  std::array<std::byte, sizeof(TerminalPoints)> bytes{};
+  std::memcpy(bytes.data(), image.data(), std::min(image.size(), bytes.size()));
+  return std::bit_cast<TerminalPoints>(bytes);
 }
 
 }  // namespace emulator_models

@@ -68,11 +68,6 @@ bool TomlTable::boolean(std::string_view key, bool fallback) {
 
 std::string TomlTable::required_text(std::string_view key) { return as_text(require(key), key); }
 
-std::string TomlTable::text(std::string_view key, std::string fallback) {
-  const toml::node* const node = find(key);
-  return node == nullptr ? std::move(fallback) : as_text(*node, key);
-}
-
 std::size_t TomlTable::one_of(std::string_view key, const std::vector<std::string_view>& allowed) {
   const toml::node* const node = find(key);
   if (node == nullptr) return 0;

@@ -33,7 +33,6 @@ class TomlTable {
   [[nodiscard]] std::int64_t required_integer(std::string_view key, std::int64_t least, std::int64_t most);
   [[nodiscard]] bool boolean(std::string_view key, bool fallback);
   [[nodiscard]] std::string required_text(std::string_view key);
-  [[nodiscard]] std::string text(std::string_view key, std::string fallback);
   /// @return the index of the word in `allowed`
   [[nodiscard]] std::size_t one_of(std::string_view key, const std::vector<std::string_view>& allowed);
   [[nodiscard]] std::vector<std::string> texts(std::string_view key);
