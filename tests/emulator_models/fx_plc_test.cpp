@@ -182,6 +182,37 @@ TEST(FxPlc, d8010_to_d8012_show_the_scan_before_the_shortest_and_the_longest_in_
   EXPECT_EQ(rig.get("D8012"), 50U);
 }
 
+TEST(FxPlc, m8011_to_m8014_change_in_the_scan_that_begins_at_their_half_period) {
+  FxPlcConfig config;
+  config.period = 1ms;
+  FxPlcRig rig{"", "LD TRUE", config};
+  const SteadyTime power_up = rig.now;
+  DeviceMemory expected{Model::fx3u};
+  for (int i = 0; i < 120; ++i) {
+    const SteadyTime start = rig.now;
+    rig.scan();
+    set_clock_flags(expected, start - power_up);
+    for (const std::uint16_t number : {std::uint16_t{8011}, std::uint16_t{8012}, std::uint16_t{8013}}) {
+      const protocol::fx::Device flag{protocol::fx::DeviceKind::m, number};
+      EXPECT_EQ(rig.emulator.lock()->get(flag), expected.get(flag)) << number << " in scan " << i;
+    }
+  }
+}
+
+TEST(Terminals, each_point_is_its_bit_of_the_image) {
+  for (std::size_t i = 0; i < Terminals::points_count; ++i) {
+    TerminalPoints points;
+    points.set(i);
+    std::array<std::byte, Terminals::points_count / 8> image{};
+    copy_points(points, image);
+    std::array<std::byte, Terminals::points_count / 8> expected{};
+    expected[i / 8] = std::byte{1} << (i % 8);
+    EXPECT_EQ(image, expected) << i;
+    EXPECT_EQ(points_of(image), points) << i;
+    EXPECT_EQ(points_of(std::span{image}.first(2)).any(), i < 16) << i;
+  }
+}
+
 TEST(FxPlc, with_m8033_on_a_stop_clears_nothing) {
   FxPlcRig rig{"", "LD TRUE"};
   rig.scan();
