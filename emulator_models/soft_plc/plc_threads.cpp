@@ -55,7 +55,7 @@ PlcThreads::PlcThreads(SoftPlc& plc, PlcClock& clock, PlcThreading threading, bo
 }
 
 void PlcThreads::start(int realtime_priority, AtEnd at_end, std::function<nanoseconds()> work) {
-  threads_.emplace_back([this, realtime_priority, at_end, work = std::move(work)] {
+  threads_.emplace_back([this, at_end, work = std::move(work)] {
     repeat(work);
     if (at_end == AtEnd::once_more) work();
   });

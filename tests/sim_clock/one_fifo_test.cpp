@@ -152,7 +152,7 @@ TEST_F(OneFifoTest, a_lock_given_back_goes_to_who_has_been_lent_a_priority_meanw
       }
       become(SCHED_FIFO, 9);
       pthread_mutex_lock(&inner);
-      std::this_thread::sleep_for(10us);
+      std::this_thread::sleep_for(20us);
       pthread_mutex_unlock(&inner);
     });
     world.process("p").start("one", [&] {
