@@ -104,7 +104,14 @@ void Ton::call(nanoseconds now) noexcept {
     et = nanoseconds{0};
   } else {
     if (phase == TimerPhase::idle) begin(*this, now);
+#ifdef LTSIM_MUTANT_TIMER_WRAPS  // ET goes on, in milliseconds of 32 bits, and Q follows it
+    const std::chrono::milliseconds wrapped{
+        static_cast<std::int32_t>((now - start) / std::chrono::milliseconds{1})};
+    phase = TimerPhase::running;
+    advance(*this, start + wrapped);
+#else
     if (phase == TimerPhase::running) advance(*this, now);
+#endif
   }
   q = phase == TimerPhase::done;
 }

@@ -129,7 +129,7 @@ Gateway::Result Gateway::exchange(GatewayRequest request, std::chrono::nanosecon
   const auto ticket = submit(std::move(request));
   if (!ticket) return tl::unexpected{ticket.error()};
   {
-    std::unique_lock lock{mutex_};
+    std::unique_lock<std::mutex> lock{mutex_};
     answered_.wait_until(lock, deadline, [&] { return (*ticket)->result.has_value(); });
   }
   return take(*ticket);

@@ -28,6 +28,7 @@
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
 #include "emulator_models/soft_plc/il_program.hpp"
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 #include "emulator_models/soft_plc/plc_observer.hpp"
 #include "emulator_models/soft_plc/variable_exchange.hpp"
 
@@ -115,7 +116,7 @@ class Gateway {
   void tell_of_writes(std::size_t cycle, PlcObserver& observer) const noexcept;
 
   const VariableExchange& exchange_;
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   std::condition_variable answered_;
   // All guarded by mutex_.
   GatewayLimits limits_;

@@ -12,6 +12,7 @@
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
 #include "emulator_models/soft_plc/il_machine.hpp"
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 
 namespace emulator_models::soft_plc {
 
@@ -46,7 +47,7 @@ class IlCycle final : public CycleBody {
   std::vector<std::byte> outputs_;
   std::vector<std::byte> memory_;
   std::vector<std::byte> output_mask_;
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   std::optional<RunTimeFault> fault_;  ///< guarded by mutex_
 };
 

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 #include "emulator_models/soft_plc/io_driver.hpp"
 
 namespace emulator_models::soft_plc {
@@ -94,7 +95,7 @@ class IoManager {
                     std::chrono::nanoseconds now) noexcept;
   void set_stale(Driver& driver, bool stale) noexcept;
 
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   std::vector<Driver> drivers_;                       ///< all but config and driver guarded by mutex_
   std::array<std::byte, inputs_bytes_max> inputs_{};  ///< guarded by mutex_
 };

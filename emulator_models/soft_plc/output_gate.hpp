@@ -19,6 +19,7 @@
 #include <span>
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 
 namespace emulator_models::soft_plc {
 
@@ -68,7 +69,7 @@ class OutputGate {
   void make_safe() noexcept;
 
   const Outputs safe_;
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   // All guarded by mutex_.
   Outputs outputs_;
   std::uint64_t epoch_ = 0;  ///< counts opens and closes; while open, the run number

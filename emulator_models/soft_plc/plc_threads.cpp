@@ -55,15 +55,15 @@ PlcThreads::PlcThreads(SoftPlc& plc, PlcClock& clock, PlcThreading threading, bo
 }
 
 void PlcThreads::start(int realtime_priority, AtEnd at_end, std::function<nanoseconds()> work) {
-  threads_.emplace_back([this, realtime_priority, at_end, work = std::move(work)] {
-    if (realtime_) ask_for_realtime(realtime_priority);
+  threads_.emplace_back([this, at_end, work = std::move(work)] {
     repeat(work);
     if (at_end == AtEnd::once_more) work();
   });
+  if (realtime_) ask_for_realtime(threads_.back(), realtime_priority);
 }
 
 void PlcThreads::repeat(const std::function<nanoseconds()>& work) noexcept {
-  std::unique_lock lock{mutex_};
+  std::unique_lock<std::mutex> lock{mutex_};
   while (!stopping_) {
     const std::uint64_t seen = safe_count_;
     lock.unlock();
@@ -73,12 +73,10 @@ void PlcThreads::repeat(const std::function<nanoseconds()>& work) noexcept {
   }
 }
 
-void PlcThreads::ask_for_realtime(int priority) noexcept {
+void PlcThreads::ask_for_realtime(std::thread& thread, int priority) noexcept {
   const sched_param parameter{.sched_priority = priority};
-  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
-  if (error == 0) return;
-  const std::lock_guard lock{mutex_};
-  refusal_ = error;
+  if (const int error = pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameter); error != 0)
+    refusal_ = error;
 }
 
 void PlcThreads::stop() noexcept {
@@ -95,7 +93,6 @@ void PlcThreads::stop() noexcept {
 }
 
 std::string PlcThreads::realtime_refusal() const {
-  const std::lock_guard lock{mutex_};
   if (refusal_ == 0) return {};
   return std::string{"SCHED_FIFO was refused ("} + std::strerror(refusal_) +
          "): scans run with ordinary priority; allow it with ulimit -r, or set realtime = false";

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 #include "emulator_models/soft_plc/soft_plc.hpp"
 
 namespace emulator_models::soft_plc {
@@ -64,16 +65,18 @@ class PlcThreads {
   enum class AtEnd : std::uint8_t { nothing, once_more };
   void start(int realtime_priority, AtEnd at_end, std::function<std::chrono::nanoseconds()> work);
   void repeat(const std::function<std::chrono::nanoseconds()>& work) noexcept;
-  void ask_for_realtime(int priority) noexcept;
+  /// By whoever starts the threads, one after the other: the watchdog has its priority before there is a cycle. A thread
+  /// that asked for itself could wait for its first turn behind a cycle that hangs.
+  void ask_for_realtime(std::thread& thread, int priority) noexcept;
 
   SoftPlc& plc_;
   PlcClock& clock_;
   const bool realtime_;
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;         ///< guarded by mutex_
   std::uint64_t safe_count_ = 0;  ///< how often outputs have become safe; guarded by mutex_
-  int refusal_ = 0;               ///< an errno; guarded by mutex_
+  int refusal_ = 0;               ///< an errno; settled when all threads have been started
   std::vector<std::thread> threads_;
 };
 

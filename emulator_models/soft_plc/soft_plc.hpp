@@ -27,6 +27,7 @@
 
 #include <tl/expected.hpp>
 
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 #include "emulator_models/soft_plc/plc_cycle.hpp"
 #include "emulator_models/soft_plc/scan_scheduler.hpp"
 #include "emulator_models/soft_plc/start_delays.hpp"
@@ -127,7 +128,7 @@ class SoftPlc {
   PlcParts parts_;
   std::unique_ptr<Gateway> gateway_;
   std::optional<std::size_t> running_;  ///< of the thread that calls advance()
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   // All guarded by mutex_, but for what says otherwise.
   ScanScheduler scheduler_;
   std::vector<Cycle> cycles_;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
+#include "emulator_models/soft_plc/inheriting_mutex.hpp"
 
 namespace emulator_models::soft_plc {
 
@@ -33,7 +34,7 @@ class VariableExchange {
 
  private:
   const std::vector<Section> sections_;
-  mutable std::mutex mutex_;
+  mutable InheritingMutex mutex_;
   std::vector<std::byte> sent_;  ///< guarded by mutex_
 };
 

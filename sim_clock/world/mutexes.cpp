@@ -212,7 +212,9 @@ void Mutexes::release(State& state, const void* address) noexcept {
     scheduler.end_lending(key, nullptr);
     scheduler.update_priority(*current_task);
   }
-  std::size_t woken_max = 1;
+  // Linux hands a mutex that inherits to the waiter of the highest priority, to whom those who go on waiting lend theirs.
+  // Here all of them wake and the highest takes it: one that were woken alone, and not the owner yet, would inherit nothing.
+  std::size_t woken_max = inherits_priority(state.kind) ? tasks_max : 1;
   if (is_robust(state.kind)) {
     // The state may be reached at another address than it was locked at: another mapping of the process.
     std::erase_if(robust_held_, [&](const RobustHeld& held) {

@@ -65,6 +65,13 @@ TEST(Machine, a_kernel_that_does_not_wait_for_fin_to_be_low_is_found) {
       << report.failures.front().outcome.message;
 }
 
+TEST(Machine, a_kernel_that_holds_its_strobes_for_a_fixed_time_is_found) {
+  const auto report = explore("machine/o23-short-strobe", executions_until_found_max);
+  ASSERT_FALSE(report.failures.empty());
+  EXPECT_TRUE(report.failures.front().outcome.message.starts_with("I27: "))
+      << report.failures.front().outcome.message;
+}
+
 TEST(EndlessProgram, is_stopped_by_the_watchdog_whoever_is_held_up) {
   const auto report = explore("machine/endless-program", 8);
   EXPECT_TRUE(report.failures.empty()) << report.failures.front().outcome.message;

@@ -136,6 +136,55 @@ TEST_F(OneFifoTest, with_inheritance_the_low_task_finishes_first) {
   EXPECT_GT(waited, 10us);
 }
 
+TEST_F(OneFifoTest, a_lock_given_back_goes_to_who_has_been_lent_a_priority_meanwhile) {
+  SimTime waited{0};
+  pthread_mutex_t inner;
+  pthread_mutex_t outer;
+  const Outcome outcome = run([&](World& world) {
+    world.set_cpu(Cpu::one_fifo);
+    // Holds `inner` until both others wait for it; `two` is woken first, `one` is then lent the priority of `high`.
+    world.process("p").start("holder", [&] {
+      for (pthread_mutex_t* const mutex : {&inner, &outer}) {
+        pthread_mutexattr_t attributes;
+        pthread_mutexattr_init(&attributes);
+        pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
+        pthread_mutex_init(mutex, &attributes);
+      }
+      become(SCHED_FIFO, 9);
+      pthread_mutex_lock(&inner);
+      std::this_thread::sleep_for(20us);
+      pthread_mutex_unlock(&inner);
+    });
+    world.process("p").start("one", [&] {
+      become(SCHED_FIFO, 1);
+      pthread_mutex_lock(&outer);
+      pthread_mutex_lock(&inner);
+      pthread_mutex_unlock(&inner);
+      pthread_mutex_unlock(&outer);
+    });
+    world.process("p").start("two", [&] {
+      become(SCHED_FIFO, 2);
+      pthread_mutex_lock(&inner);
+      pthread_mutex_unlock(&inner);
+    });
+    world.process("p").start("middle", [] {
+      become(SCHED_FIFO, 5);
+      std::this_thread::sleep_for(10us);
+      work(5000);  // 500 us
+    });
+    world.process("p").start("high", [&] {
+      become(SCHED_FIFO, 8);
+      std::this_thread::sleep_for(50us);
+      const SimTime begin = world.now();
+      pthread_mutex_lock(&outer);
+      waited = world.now() - begin;
+      pthread_mutex_unlock(&outer);
+    });
+  });
+  EXPECT_EQ(outcome, Outcome{});
+  EXPECT_LT(waited, 20us);
+}
+
 TEST_F(OneFifoTest, a_thread_has_the_priority_of_its_attributes_or_of_its_creator) {
   const Outcome outcome = run_task([](World&) {
     become(SCHED_RR, 7);

@@ -36,6 +36,13 @@ SCENARIO("machine/fin-wait-removed",
       {.service = scenarios::PortService::between_scans, .fin_wait = scenarios::FinWait::none});
 }
 
+SCENARIO("machine/o23-short-strobe",
+         "the kernel holds its strobes for four scans and takes each function for done") {
+  scenarios::run_shift(
+      world, whole_program(),
+      {.service = scenarios::PortService::between_scans, .strobe_hold = scenarios::StrobeHold::fixed_time});
+}
+
 SCENARIO("machine/fin-wait-removed-corrected", "the next strobe rises only when FIN is low") {
   scenarios::run_shift(world, whole_program(), {.service = scenarios::PortService::between_scans});
 }

@@ -1,6 +1,7 @@
 #include "tests/scenarios/machine/machine_scene.hpp"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -60,6 +61,41 @@ class ImpatientLink final : public kernel_mocks::PlcLink {
   bool strobes_are_low_ = true;
 };
 
+/// Strobes are pulses, and whoever has had one is done: the kernel without a handshake.
+class PulsingLink final : public kernel_mocks::PlcLink {
+ public:
+  static constexpr auto pulse = 4 * scan_period;
+
+  explicit PulsingLink(kernel_mocks::PlcLink& link) noexcept : link_{link} {}
+
+  tl::expected<Status, kernel_mocks::FxDriverError> status() noexcept override {
+    auto status = link_.status();
+    if (status && is_raised_) status->signals |= kernel_mocks::signals::fin;
+    return status;
+  }
+  Done read_bytes(Device first, std::span<std::byte> into) noexcept override {
+    return link_.read_bytes(first, into);
+  }
+  Done write_bytes(Device first, std::span<const std::byte> bytes) noexcept override {
+    using namespace kernel_mocks::signals;
+    if (first != strobe_byte) return link_.write_bytes(first, bytes);
+    constexpr std::byte strobes = strobe_m | strobe_s | strobe_t;
+    const std::array low{bytes.front() & ~strobes};
+    const bool is_raised = bytes.front() != low.front();
+    if (is_raised && !is_raised_) {
+      if (auto done = link_.write_bytes(first, bytes); !done) return done;
+      std::this_thread::sleep_for(pulse);
+    }
+    is_raised_ = is_raised;
+    return link_.write_bytes(first, low);
+  }
+  Done force(Device device, bool on) noexcept override { return link_.force(device, on); }
+
+ private:
+  kernel_mocks::PlcLink& link_;
+  std::atomic<bool> is_raised_{false};  ///< as the kernel has it
+};
+
 kernel_mocks::Program drawn_program(ltsim::World& world) {
   std::string text = "%\n";
   for (unsigned i = 0; i < blocks_in_program; ++i)
@@ -69,7 +105,7 @@ kernel_mocks::Program drawn_program(ltsim::World& world) {
 
 /// The kernel: one part program after the other, whatever becomes of them.
 void run_kernel(ltsim::World& world, const PaperOptions& paper, FunctionMonitor& functions,
-                FinWait fin_wait) {
+                const ShiftSetup& setup) {
   protocol::SharedMemoryPortManager ports{paper};
   const auto port = ports.port("handoff");
   if (!port) return;
@@ -77,10 +113,12 @@ void run_kernel(ltsim::World& world, const PaperOptions& paper, FunctionMonitor&
   if (!driver.connect()) return;
   kernel_mocks::DirectLink link{driver};
   ImpatientLink impatient{link};
+  PulsingLink pulsing{link};
+  kernel_mocks::PlcLink* used = &link;
+  if (setup.fin_wait == FinWait::none) used = &impatient;
+  if (setup.strobe_hold == StrobeHold::fixed_time) used = &pulsing;
   kernel_mocks::LogicTask logic_task{
-      fin_wait == FinWait::until_low ? static_cast<kernel_mocks::PlcLink&>(link) : impatient,
-      {.poll_interval = 40ms, .fin_timeout = 20s, .ready_timeout = 6s},
-      &functions};
+      *used, {.poll_interval = 40ms, .fin_timeout = 20s, .ready_timeout = 6s}, &functions};
   kernel_mocks::OperatorPanel panel;
   using enum kernel_mocks::OperatorEvent;
   // Who is always disturbed gets nowhere: in some shifts nobody touches the panel.
@@ -151,7 +189,7 @@ void run_shift(ltsim::World& world, const emulator_models::soft_plc::IlProgram& 
   std::atomic<bool> done{false};
 
   world.process("kernel").start("main", [&] {
-    run_kernel(world, paper, functions, setup.fin_wait);
+    run_kernel(world, paper, functions, setup);
     done.store(true);
     handler.request_stop();
     machine.request_stop();

@@ -11,11 +11,15 @@
 namespace scenarios {
 
 enum class FinWait { until_low, none };
+/// When a strobe falls.
+enum class StrobeHold { until_fin, fixed_time };
 
 struct ShiftSetup {
   PortService service = PortService::at_scan_boundary;
   /// none: the kernel takes FIN for low as soon as it has let its strobes fall.
   FinWait fin_wait = FinWait::until_low;
+  /// fixed_time: the kernel lets it fall after four scans and takes its function for done.
+  StrobeHold strobe_hold = StrobeHold::until_fin;
   /// The interlock to judge by; empty: all.
   std::string_view only_rule{};
 };

@@ -133,18 +133,30 @@ bool PlcMonitor::may_be_over_time(const Cycle& cycle) const noexcept {
   return world_.now() - cycle.began_after > options_.watchdog_limit;
 }
 
+void PlcMonitor::computes() {
+  const ltsim::GhostScope ghost;
+  const ltsim::Scheduler& scheduler = world_.scheduler();
+  for (ltsim::TaskId id = 0; id < scheduler.tasks_count(); ++id) {
+    if (scheduler.task(id).state == ltsim::Task::State::stalled) held_up_at_ = world_.now();
+  }
+  if (world_.now() - held_up_at_ > watchdog_work) require_watchdog(watchdog_work);
+}
+
 void PlcMonitor::idle() {
+  require_watchdog(watchdog_delta);
+  if (lamp_) look_at_lamp();
+}
+
+void PlcMonitor::require_watchdog(Nanoseconds delta) {
   if (!lamp_) return;
   for (Cycle& cycle : cycles_) {
-    if (!cycle.is_in_scan || world_.now() - cycle.first_slice <= options_.watchdog_limit + watchdog_delta)
-      continue;
+    if (!cycle.is_in_scan || world_.now() - cycle.first_slice <= options_.watchdog_limit + delta) continue;
     require(cycle.slices_in_scan == 1 || lamp_(),
             "I22: slices of the program have earned their scan more time");
     require(lamp_(), "I20: a scan lasts longer than the watchdog's limit, and the PLC is not stopped");
     // While it has not come back no RUN is accepted.
     last_dead_run_ = runs_count_;
   }
-  look_at_lamp();
 }
 
 }  // namespace scenarios

@@ -7,6 +7,8 @@
 //
 // What is tolerated, since any thread may be slow for any time:
 //   I20  is judged when every task waits of its own accord: then the watchdog has had its chance, and delta is 1 us.
+//        Where a scan that hangs computes on the only processor, delta is 20 us, 200 steps of the world, in which the
+//        host holds nobody up: whatever then keeps the watchdog waiting is the PLC's matter.
 //   I21  the lamp may go on while the latest scan of some cycle began longer ago than the limit: from outside it
 //        cannot be told from one that has not ended.
 //   I26  starts, not due moments: a start that the host delays keeps its point of the grid, so that one scan more
@@ -32,6 +34,8 @@ class PlcMonitor {
   using Nanoseconds = std::chrono::nanoseconds;
   static constexpr std::size_t cycles_count = 2;
   static constexpr Nanoseconds watchdog_delta{1000};
+  /// What the watchdog has to do until it has closed the gate, and those before it who hold a mutex.
+  static constexpr Nanoseconds watchdog_work{20'000};
   struct Options {
     std::array<Nanoseconds, cycles_count> periods{};
     Nanoseconds watchdog_limit{0};
@@ -61,6 +65,8 @@ class PlcMonitor {
   /// The output words of a scan that is complete are outputs_of(number), with the numbers 1, 2 ...
   void scan_computed(std::size_t cycle);
   void gave_up(std::size_t cycle);
+  /// A program computes on the only processor; no task of lower priority comes to run meanwhile.
+  void computes();
   [[nodiscard]] std::uint32_t next_outputs(std::size_t cycle) const noexcept {
     return outputs_of(cycles_[cycle].computed_in.size() + 1);
   }
@@ -93,6 +99,7 @@ class PlcMonitor {
   void begin_scan(Cycle& cycle, std::size_t index, Nanoseconds scan_start, bool first_scan);
   void check_spacing(const Cycle& cycle, std::size_t index);
   void look_at_lamp();
+  void require_watchdog(Nanoseconds delta);
   /// @param message  begins with the invariant
   void require(bool holds, std::string_view message);
   [[nodiscard]] bool may_be_over_time(const Cycle& cycle) const noexcept;
@@ -105,6 +112,7 @@ class PlcMonitor {
   std::uint64_t runs_count_ = 0;
   std::uint64_t last_dead_run_ = 0;
   Nanoseconds stop_ordered_at_{-1};
+  Nanoseconds held_up_at_{-watchdog_work};  ///< some task, by the host; seen while a program computed
   std::map<Nanoseconds, Nanoseconds> wrong_readings_;  ///< when what was first read, if it was not the time
   bool lamp_was_off_ = false;                          ///< since the latest RUN order
   bool was_over_time_ = false;                         ///< some scan of the run may have been

@@ -76,6 +76,16 @@ SHAPE("plc/o18-watchdog-against-restart",
   run(world, corrected, scenarios::restarted_scene);
 }
 
+#elif defined(LTSIM_MUTANT_PLAIN_MUTEX)
+SHAPE("plc/o12-plain-mutex",
+      {.finding = "I20",
+       .depth = 2,
+       .tasks_count = 6,
+       .cure = "who holds a mutex inherits the priority of who waits"},
+      "a scan that hangs keeps the driver from giving back the mutex that the watchdog waits for") {
+  run(world, corrected, scenarios::realtime_scene);
+}
+
 #elif defined(LTSIM_MUTANT_CATCH_UP_WITHOUT_BOUND)
 SHAPE("plc/o19-catch-up-without-bound",
       {.finding = "I26",

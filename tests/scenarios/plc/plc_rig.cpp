@@ -31,19 +31,27 @@ WatchedBody::Hang choose_hang(ltsim::World& world, const PlcScene& scene) {
   using Trouble = WatchedBody::Trouble;
   const auto duration = scene.watchdog_limit + scene.watchdog_limit / 6;
   if (scene.hang == PlcScene::Hang::never) return {};
-  if (scene.hang == PlcScene::Hang::second_scan) return {Trouble::hangs_in_slice, 2, duration};
+  if (scene.hang == PlcScene::Hang::second_scan)
+    return {Trouble::hangs_in_slice, 2, duration, scene.realtime};
   const auto trouble = static_cast<Trouble>(world.choose("hang", 3));
-  return {trouble, 1 + world.choose("hangs-in-scan", 4), duration};
+  return {trouble, 1 + world.choose("hangs-in-scan", 4), duration, scene.realtime};
 }
 
 /// One exchange of the first 16 has the trouble.
 std::function<SharedMemoryDriver::Trouble()> choose_trouble(ltsim::World& world, const PlcScene& scene) {
   using Trouble = SharedMemoryDriver::Trouble;
+  if (scene.realtime) return [number = 0]() mutable { return number++ == 0 ? Trouble::late : Trouble::none; };
   if (!scene.driver_may_fail) return [] { return Trouble::none; };
   const auto trouble = static_cast<Trouble>(world.choose("driver", 3));
   return [trouble, number = world.choose("driver-exchange", 16)]() mutable {
     return number-- == 0 ? trouble : Trouble::none;
   };
+}
+
+/// Where between two scans the driver works is a matter of when it began.
+std::chrono::microseconds choose_lateness(ltsim::World& world, const PlcScene& scene) {
+  if (!scene.realtime) return 12ms;
+  return 1us + scene.period / 2 * static_cast<int>(world.choose("phase", 100)) / 100;
 }
 
 SoftPlcSetup make_setup(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
@@ -64,7 +72,8 @@ SoftPlcSetup make_setup(ltsim::World& world, const PlcScene& scene, PlcMonitor& 
   card.config.name = "card";
   card.config.inputs = {0, 8};
   card.config.period = scene.period / 2;
-  card.driver = std::make_unique<SharedMemoryDriver>(monitor, scene.driver, choose_trouble(world, scene));
+  card.driver = std::make_unique<SharedMemoryDriver>(monitor, scene.driver, choose_trouble(world, scene),
+                                                     choose_lateness(world, scene));
   return setup;
 }
 
@@ -114,7 +123,7 @@ void run_plc(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
   monitor.set_lamp([&plc] { return plc->alarm_lamp(); });
   PlcThreads threads{
       *plc, *clock, scene.threading == PlcScene::Threading::one ? PlcThreading::one : PlcThreading::per_cycle,
-      false};
+      scene.realtime};
   operate(world, scene, *plc, monitor);
   monitor.set_lamp({});  // the watchdog ends, and the outputs are safe
   threads.stop();
@@ -131,6 +140,7 @@ void move_inputs(const PlcScene& scene) {
 }  // namespace
 
 void run_scene(ltsim::World& world, const PlcScene& scene) {
+  if (scene.realtime) world.set_cpu(ltsim::Cpu::one_fifo);
   world.name_region(card_segment, 0, 8, "card.inputs");
   world.name_region(card_segment, 8, 8, "card.outputs");
   PlcMonitor monitor{world,

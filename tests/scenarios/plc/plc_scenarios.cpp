@@ -2,7 +2,9 @@
 
 #include <chrono>
 
+#include "emulator_models/soft_plc/function_blocks.hpp"
 #include "sim_clock/scenario/shape.hpp"
+#include "tests/scenarios/plc/on_delay_scene.hpp"
 #include "tests/scenarios/plc/plc_rig.hpp"
 #include "tests/scenarios/plc/plc_scenes.hpp"
 
@@ -45,6 +47,16 @@ SHAPE("plc/o15-millisecond-wrap",
   PlcScene scene{.hang = PlcScene::Hang::may, .only = "I20"};
   if (!corrected) scene.clock = PlcScene::Clock::milliseconds_32;
   run_unmutated(world, scene);
+}
+
+SHAPE("plc/o16-timer-wraps",
+      {.finding = "timer", .depth = 1, .tasks_count = 2, .cure = "a timer that is done keeps Q and ET"},
+      "the elapsed time of an on-delay timer is a TIME of 32 bits") {
+  if (corrected) {
+    scenarios::watch_on_delay<emulator_models::soft_plc::Ton>(world);
+  } else {
+    scenarios::watch_wrapping_on_delay(world);
+  }
 }
 
 SHAPE("plc/o21-past-the-gate",

@@ -41,8 +41,10 @@ struct PlcScene {
   Clock clock = Clock::steady;
   Inputs inputs = Inputs::latched;
   Driver driver = Driver::through_gate;
-  std::chrono::milliseconds period{10};  ///< of the first cycle; the second one has twice that
-  std::chrono::milliseconds watchdog_limit{30};
+  std::chrono::microseconds period{10'000};  ///< of the first cycle; the second one has twice that
+  std::chrono::microseconds watchdog_limit{30'000};
+  /// SCHED_FIFO on one processor. A scan that hangs computes, and the driver is late by up to a period of its own.
+  bool realtime = false;
   bool catches_up = false;  ///< instead of skipping the starts that were missed
   Hang hang = Hang::never;
   Operator panel = Operator::gives_orders;

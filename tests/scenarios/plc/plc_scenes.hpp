@@ -9,6 +9,12 @@ inline constexpr PlcScene troubled_scene{.hang = PlcScene::Hang::may, .driver_ma
 inline constexpr PlcScene one_thread_scene{
     .threading = PlcScene::Threading::one, .hang = PlcScene::Hang::may, .driver_may_fail = true};
 inline constexpr PlcScene hanging_scene{.hang = PlcScene::Hang::may, .only = "I20"};
+inline constexpr PlcScene realtime_scene{.period = std::chrono::milliseconds{1},
+                                         .watchdog_limit = std::chrono::microseconds{150},
+                                         .realtime = true,
+                                         .hang = PlcScene::Hang::second_scan,
+                                         .orders = 0,
+                                         .only = "I20"};
 inline constexpr PlcScene restarted_scene{.threading = PlcScene::Threading::one,
                                           .period = std::chrono::milliseconds{20},
                                           .watchdog_limit = std::chrono::milliseconds{45},

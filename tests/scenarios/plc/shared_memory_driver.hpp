@@ -27,13 +27,15 @@ class SharedMemoryDriver final : public emulator_models::soft_plc::IoDriver {
   enum class Trouble : std::uint8_t { none, late, fails };
 
   /// @param trouble  asked at each exchange
-  SharedMemoryDriver(PlcMonitor& monitor, PlcScene::Driver kind, std::function<Trouble()> trouble)
-      : monitor_{monitor}, kind_{kind}, trouble_{std::move(trouble)} {}
+  /// @param lateness  of an exchange that is late
+  SharedMemoryDriver(PlcMonitor& monitor, PlcScene::Driver kind, std::function<Trouble()> trouble,
+                     std::chrono::microseconds lateness)
+      : monitor_{monitor}, kind_{kind}, trouble_{std::move(trouble)}, lateness_{lateness} {}
 
   bool exchange(const emulator_models::soft_plc::OutputGate::Frame& frame,
                 emulator_models::soft_plc::OutputGate& gate, std::span<std::byte> inputs) noexcept override {
     const Trouble trouble = trouble_();
-    if (trouble == Trouble::late) std::this_thread::sleep_for(std::chrono::milliseconds{12});
+    if (trouble == Trouble::late) std::this_thread::sleep_for(lateness_);
     std::uint64_t wanted = 0;
     std::memcpy(&wanted, frame.outputs.data(), sizeof wanted);
     write(wanted, frame, gate);
@@ -72,6 +74,7 @@ class SharedMemoryDriver final : public emulator_models::soft_plc::IoDriver {
   PlcMonitor& monitor_;
   const PlcScene::Driver kind_;
   const std::function<Trouble()> trouble_;
+  const std::chrono::microseconds lateness_;
 };
 
 }  // namespace scenarios::soft_plc

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <thread>
@@ -25,7 +26,8 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
   struct Hang {
     Trouble trouble = Trouble::none;
     std::size_t scan = 0;  ///< from 1, over all runs
-    std::chrono::milliseconds duration{0};
+    std::chrono::microseconds duration{0};
+    bool computes = false;  ///< instead of sleeping
   };
 
   WatchedBody(PlcMonitor& monitor, std::size_t cycle, PlcScene::Inputs inputs, const Hang& hang)
@@ -75,13 +77,26 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
   bool is_held_up() noexcept {
     constexpr std::chrono::milliseconds slice{5};
     if (hang_.trouble == Trouble::none || scan_ != hang_.scan ||
-        hang_.duration <= std::chrono::milliseconds{0})
+        hang_.duration <= std::chrono::microseconds{0})
       return false;
     const bool in_slice = hang_.trouble == Trouble::hangs_in_slice;
-    const auto duration = in_slice ? hang_.duration : slice;
-    std::this_thread::sleep_for(duration);
+    const std::chrono::microseconds duration = in_slice ? hang_.duration : slice;
+    if (hang_.computes) {
+      compute(duration);
+    } else {
+      std::this_thread::sleep_for(duration);
+    }
     hang_.duration -= duration;
     return !in_slice;
+  }
+
+  void compute(std::chrono::microseconds duration) noexcept {
+    std::atomic<unsigned> steps{0};
+    const auto end = std::chrono::steady_clock::now() + duration;
+    while (std::chrono::steady_clock::now() < end) {
+      for (int i = 0; i < 10; ++i) ++steps;
+      monitor_.computes();
+    }
   }
 
   const Card card_{card_segment};
