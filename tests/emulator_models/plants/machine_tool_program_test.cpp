@@ -268,5 +268,47 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(tried.param.m_code) + "_after_" + std::to_string(tried.param.millis);
     });
 
+TEST(MachineToolRestart, takes_no_reset_that_is_on_already_for_an_edge) {
+  MachineToolRig rig{machine_tool_program()};
+  rig.set_m(105, true);
+  rig.run_for(200ms);
+  EXPECT_FALSE(rig.m(122));
+  rig.set_m(105, false);
+  rig.run_for(50ms);
+  rig.reset();
+  EXPECT_TRUE(rig.m(122));
+}
+
+TEST(MachineToolRestart, keeps_the_tools_and_forgets_where_the_magazine_stands) {
+  MachineToolRig rig{machine_tool_program()};
+  rig.switch_on();
+  rig.select_tool(4);
+  rig.execute(6);
+  EXPECT_NE(rig.d(222), 0);
+  rig.restart();
+  rig.scan();
+  EXPECT_EQ(rig.d(222), 0);
+  EXPECT_EQ(rig.d(221), 4);
+  EXPECT_EQ(rig.d(223), 0);
+}
+
+TEST(MachineToolRestart, in_an_exchange_leaves_it_in_doubt_until_somebody_has_looked) {
+  MachineToolRig rig{machine_tool_program()};
+  rig.switch_on();
+  rig.select_tool(4);
+  rig.give(6);
+  for (int scans = 0; rig.d(115) != 5 && scans < 3000; ++scans) rig.scan();
+  ASSERT_EQ(rig.d(115), 5);
+  EXPECT_EQ(rig.d(223), 1);
+  rig.restart();
+  rig.scan();
+  EXPECT_EQ(rig.d(223), 2);
+  rig.take_back_strobes();
+  rig.switch_on();
+  rig.select_tool(7);
+  rig.execute(6);
+  EXPECT_EQ(rig.alarm(), 32);
+}
+
 }  // namespace
 }  // namespace emulator_models
