@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ostream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -16,17 +14,14 @@
 #include "sim_clock/scenario/shape.hpp"
 #include "tests/scenarios/paper_exchange.hpp"
 #include "tests/scenarios/scenario_name.hpp"
-
-namespace ltsim {
-
-void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
-
-}  // namespace ltsim
+#include "tests/scenarios/search.hpp"
 
 namespace {
 
 using protocol::PaperOptions;
+using scenarios::explore;
 using scenarios::PaperExchange;
+using scenarios::world;
 
 /// What the hazards are searched with.
 using Search = ltsim::SwarmStrategy;
@@ -35,26 +30,6 @@ using Search = ltsim::SwarmStrategy;
 /// a random walk).
 using ManyWalks = ltsim::RandomStrategy;
 constexpr std::uint64_t executions_until_found_max = 100'000;
-
-ltsim::World& world() {
-  static ltsim::World only;
-  return only;
-}
-
-template <typename Strategy>
-ltsim::ExploreReport explore(const ltsim::Scenario& scenario, std::uint64_t seed, std::uint64_t executions,
-                             bool keep_going = false) {
-  Strategy strategy;
-  ltsim::ExploreOptions options;
-  options.seed = seed;
-  options.executions_max = executions;
-  options.keep_going = keep_going;
-  try {
-    return ltsim::Explorer{world()}.explore(scenario, strategy, options);
-  } catch (const ltsim::Explorer::NotSimulable& error) {
-    throw std::runtime_error{error.message};  // GoogleTest shows what it says
-  }
-}
 
 class HazardTest : public testing::TestWithParam<ltsim::Shape> {};
 

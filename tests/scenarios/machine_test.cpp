@@ -8,25 +8,15 @@
 
 #include "emulator_models/programs/interlock_rules.hpp"
 #include "emulator_models/programs/machine_tool_program.hpp"
-#include "sim_clock/explore/explorer.hpp"
-#include "sim_clock/explore/swarm_strategy.hpp"
+#include "tests/scenarios/search.hpp"
 
 namespace {
 
 constexpr std::uint64_t executions_until_found_max = 10'000;
 constexpr std::uint64_t silent_executions = 150;
 
-ltsim::World& world() {
-  static ltsim::World only;
-  return only;
-}
-
 ltsim::ExploreReport explore(const std::string& scenario, std::uint64_t executions) {
-  ltsim::SwarmStrategy strategy;
-  ltsim::ExploreOptions options;
-  options.executions_max = executions;
-  options.minimize_seconds = std::chrono::seconds{0};
-  return ltsim::Explorer{world()}.explore(*ltsim::find_scenario(scenario), strategy, options);
+  return scenarios::explore(scenario, 1, executions);
 }
 
 struct WholeMachine : ::testing::TestWithParam<const char*> {};
@@ -80,9 +70,9 @@ TEST(EndlessProgram, is_stopped_by_the_watchdog_whoever_is_held_up) {
 TEST(EndlessProgram, takes_the_same_scheduling_points_for_the_same_seed) {
   const auto points = [](std::uint64_t seed) {
     ltsim::SwarmStrategy strategy;
-    ltsim::Explorer{world()}.execute(*ltsim::find_scenario("machine/endless-program"), strategy, seed,
-                                     nullptr);
-    return world().scheduler().points();
+    ltsim::Explorer{scenarios::world()}.execute(*ltsim::find_scenario("machine/endless-program"), strategy,
+                                                seed, nullptr);
+    return scenarios::world().scheduler().points();
   };
   for (std::uint64_t seed = 1; seed <= 3; ++seed) EXPECT_EQ(points(seed), points(seed)) << seed;
 }
@@ -92,8 +82,8 @@ TEST(EndlessProgram, is_stopped_within_150_ms_when_nobody_is_held_up) {
                                         .outcome = ltsim::OutcomeKind::passed,
                                         .message = {},
                                         .deviations = {}};
-  const auto report = ltsim::Explorer{world()}.replay(*ltsim::find_scenario("machine/endless-program"),
-                                                      nothing_special, nullptr);
+  const auto report = ltsim::Explorer{scenarios::world()}.replay(
+      *ltsim::find_scenario("machine/endless-program"), nothing_special, nullptr);
   EXPECT_TRUE(report.outcome.passed()) << report.outcome.message;
   // Three scans of 10 ms, then the one that hangs.
   EXPECT_GT(report.at, std::chrono::milliseconds{180});

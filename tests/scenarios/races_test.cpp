@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <ostream>
-#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -14,55 +12,23 @@
 #include "sim_clock/explore/minimizer.hpp"
 #include "sim_clock/explore/swarm_strategy.hpp"
 #include "sim_clock/scenario/shape.hpp"
-
-namespace ltsim {
-
-void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
-
-}  // namespace ltsim
+#include "tests/scenarios/search.hpp"
 
 namespace {
 
 constexpr std::uint64_t seeds_count = 5;
 constexpr std::uint64_t executions_until_found_max = 40'000;
-/// Of the corrected program: ten times what the search needed. At least so many, for a cure that is none may hide
-/// the race without removing it; at most so many, for the test is to take a moment.
 constexpr std::uint64_t silent_executions_min = 5'000;
 constexpr std::uint64_t silent_executions_max = 30'000;
 
-ltsim::World& world() {
-  static ltsim::World only;
-  return only;
-}
-
-ltsim::ExploreReport explore(std::string_view scenario, std::uint64_t seed, std::uint64_t executions) {
-  ltsim::SwarmStrategy strategy;
-  ltsim::ExploreOptions options;
-  options.seed = seed;
-  options.executions_max = executions;
-  try {
-    return ltsim::Explorer{world()}.explore(*ltsim::find_scenario(scenario), strategy, options);
-  } catch (const ltsim::Explorer::NotSimulable& error) {
-    throw std::runtime_error{error.message};  // GoogleTest shows what it says
-  }
-}
+using scenarios::explore;
+using scenarios::world;
 
 class ShapeTest : public testing::TestWithParam<ltsim::Shape> {};
 
 TEST_P(ShapeTest, is_found_from_every_seed_and_its_corrected_program_is_silent) {
-  const ltsim::Shape& shape = GetParam();
-  std::uint64_t most_needed = 0;
-  for (std::uint64_t seed = 1; seed <= seeds_count; ++seed) {
-    const auto report = explore(shape.name, seed, executions_until_found_max);
-    ASSERT_FALSE(report.failures.empty()) << "seed " << seed;
-    const ltsim::Outcome& outcome = report.failures.front().outcome;
-    EXPECT_TRUE(shape.is_finding(outcome)) << to_string(outcome.kind) << ": " << outcome.message;
-    most_needed = std::max(most_needed, report.executions);
-  }
-  const auto silent = explore(shape.corrected_name, 1,
-                              std::clamp(10 * most_needed, silent_executions_min, silent_executions_max));
-  EXPECT_TRUE(silent.failures.empty()) << silent.failures.front().outcome.message << '\n'
-                                       << to_string(silent.failures.front().schedule);
+  scenarios::expect_found_and_cured(
+      GetParam(), {executions_until_found_max, silent_executions_min, silent_executions_max});
 }
 
 /// Ordering constraints that the program needs, as probabilistic concurrency testing counts them. Three programs have a
