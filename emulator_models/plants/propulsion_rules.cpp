@@ -47,6 +47,13 @@ void PropulsionRules::observe(const Terminals& terminals, const PropulsionContra
   judge_speed();
 }
 
+void PropulsionRules::run_begins() noexcept {
+  PropulsionRules anew;
+  anew.broken_ = broken_;
+  anew.tripped_ = tripped_;
+  *this = anew;
+}
+
 void PropulsionRules::judge_start_and_stop(SteadyTime now) noexcept {
   using enum PropulsionRule;
   const bool pumps_rest = !scan_.in(wire::pump_1_runs) && !scan_.in(wire::pump_2_runs);
@@ -61,9 +68,11 @@ void PropulsionRules::judge_start_and_stop(SteadyTime now) noexcept {
     demand(oil_start, scan_.in(wire::oil_pressure));
     demand(start_at_zero, scan_.word(wire::target) == 0);
     demand(switch_proved, pressure_proved_);
-    demand(trip_latch, !before_.on(wire::tripped));
+    demand(trip_latch, !tripped_);
     demand(start_edge, start_ordered(scan_) && !start_ordered(before_));
   }
+  demand(trip_latch, !tripped_ || scan_.on(wire::tripped) || scan_.acknowledged());
+  tripped_ = scan_.on(wire::tripped);
   demand(stop_button, scan_.in(wire::stop_button) || !scan_.out(wire::run));
   demand(station_stop, !scan_.on(wire::pc_stop) || !scan_.out(wire::run));
 
@@ -88,15 +97,12 @@ void PropulsionRules::judge_oil(SteadyTime now) noexcept {
     demand(oil_speed_limit, std::abs(scan_.word(wire::setpoint)) <= 400);
   demand(oil_stop, !oil_low_.reached(10s));
 
-  const auto acknowledged = [](const Scan& scan) {
-    return scan.in(wire::acknowledge_button) || scan.on(wire::pc_acknowledge);
-  };
   bool new_alarm = false;
   for (std::uint16_t number = wire::oil_alarm.number; number <= wire::speed_alarm.number; ++number) {
     const wire::Device bit{wire::DeviceKind::m, number};
     new_alarm |= scan_.on(bit) && !before_.on(bit);
   }
-  const bool acknowledge = acknowledged(scan_) && !acknowledged(before_);
+  const bool acknowledge = scan_.acknowledged() && !before_.acknowledged();
   demand(buzzer_ack, !acknowledge || new_alarm || !scan_.out(wire::buzzer));
 }
 

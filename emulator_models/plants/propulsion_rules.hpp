@@ -81,6 +81,9 @@ class PropulsionRules {
   /// @param now        of the scan; never earlier than in the call before
   void observe(const Terminals& terminals, const PropulsionContract& contract, SteadyTime now) noexcept;
 
+  /// The PLC goes from STOP to RUN: what its program forgets by that, the observer forgets. A trip is not forgotten.
+  void run_begins() noexcept;
+
   [[nodiscard]] const BrokenPropulsionRules& broken() const noexcept { return broken_; }
 
  private:
@@ -105,6 +108,9 @@ class PropulsionRules {
     [[nodiscard]] bool out(propulsion::Device y) const noexcept { return terminals.outputs[y.number]; }
     [[nodiscard]] bool on(propulsion::Device m) const noexcept { return contract.on(m); }
     [[nodiscard]] std::int32_t word(propulsion::Device d) const noexcept { return contract.word(d); }
+    [[nodiscard]] bool acknowledged() const noexcept {
+      return in(propulsion::acknowledge_button) || on(propulsion::pc_acknowledge);
+    }
   };
 
   void demand(PropulsionRule rule, bool kept) noexcept {
@@ -127,6 +133,7 @@ class PropulsionRules {
   Duration link_lost_in_remote_;
   Duration driven_and_standing_;
   bool pressure_proved_ = false;
+  bool tripped_ = false;
   std::int32_t lever_at_loss_ = 0;
   std::optional<SteadyTime> last_run_;
 };

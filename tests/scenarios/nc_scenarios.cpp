@@ -14,6 +14,7 @@
 #include "protocol/shared_memory_port_manager.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
 #include "sim_clock/scenario/scenario.hpp"
+#include "tests/scenarios/compiled_program.hpp"
 #include "tests/scenarios/machine/watched_machine.hpp"
 #include "tests/scenarios/segment_names.hpp"
 

@@ -120,6 +120,23 @@ TEST_F(PropulsionProgramTest, after_a_trip_it_starts_again_only_when_acknowledge
   EXPECT_TRUE(rig.out(wire::run));
 }
 
+TEST_F(PropulsionProgramTest, a_trip_outlasts_a_stop_of_the_plc) {
+  lose_both_pumps();
+  rig.scan_for(11s);
+  rig.fail(pump_1_without_pressure, false);
+  rig.fail(pump_2_without_pressure, false);
+  rig.plant.move_lever(0);
+  rig.stop_and_run_plc();
+  rig.scan_for(3s);
+  EXPECT_TRUE(rig.on(wire::tripped));
+  rig.press_start();
+  EXPECT_FALSE(rig.out(wire::run));
+  rig.press_acknowledge();
+  rig.scan();
+  rig.press_start();
+  EXPECT_TRUE(rig.out(wire::run));
+}
+
 TEST_F(PropulsionProgramTest, the_standby_pump_takes_over_before_the_speed_is_limited) {
   rig.start();
   rig.fail(pump_1_without_pressure);

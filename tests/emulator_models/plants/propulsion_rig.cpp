@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "emulator_models/fx_address_map.hpp"
+#include "emulator_models/latched_ranges.hpp"
 #include "emulator_models/programs/propulsion_program.hpp"
 #include "emulator_models/soft_plc/il_compiler.hpp"
 
@@ -81,6 +82,14 @@ void PropulsionRig::press_start() {
   plant.press_start(true);
   scan();
   plant.press_start(false);
+}
+
+void PropulsionRig::stop_and_run_plc() {
+  terminals.outputs.reset();
+  terminals.analog_outputs.fill(0);
+  clear_unlatched(devices_);
+  machine_->start(soft_plc::IlMachine::Start::warm);
+  rules.run_begins();
 }
 
 bool PropulsionRig::on(propulsion::Device m) const { return devices_.get(m) != 0; }

@@ -35,6 +35,8 @@ class PropulsionRig {
   void give_control_to_station();
   void press_acknowledge();
   void press_start();
+  /// The PLC goes to STOP and back to RUN: what is not latched is lost.
+  void stop_and_run_plc();
   void fail(PropulsionFailure failure, bool on = true) { plant.set_failure(failure, on); }
 
   [[nodiscard]] bool in(propulsion::Device x) const { return terminals.inputs.test(x.number); }

@@ -24,6 +24,7 @@
 #include "kernel_mocks/part_program_runner.hpp"
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/strategy.hpp"
+#include "tests/scenarios/compiled_program.hpp"
 #include "tests/scenarios/machine/local_port.hpp"
 #include "tests/scenarios/machine/watched_machine.hpp"
 

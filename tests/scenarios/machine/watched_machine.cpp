@@ -1,13 +1,9 @@
 #include "tests/scenarios/machine/watched_machine.hpp"
 
-#include <stdexcept>
 #include <string>
 #include <thread>
 
 #include <fmt/format.h>
-
-#include "emulator_models/fx_address_map.hpp"
-#include "emulator_models/soft_plc/il_compiler.hpp"
 
 namespace scenarios {
 namespace {
@@ -40,12 +36,6 @@ MachineToolContract contract_in(const DeviceMemory& memory, bool plc_runs) {
 }
 
 }  // namespace
-
-soft_plc::IlProgram compiled_for_fx3u(std::string_view source) {
-  auto program = soft_plc::compile(source, FxAddressMap{protocol::fx::Model::fx3u});
-  if (!program) throw std::runtime_error{to_string(program.error())};
-  return std::move(*program);
-}
 
 WatchedMachine::WatchedMachine(ltsim::World& world, const soft_plc::IlProgram& program,
                                FunctionMonitor& functions, std::chrono::nanoseconds period,

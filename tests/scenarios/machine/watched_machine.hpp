@@ -65,7 +65,4 @@ class WatchedMachine {
   std::atomic<bool> stop_requested_{false};
 };
 
-/// The embedded program, or one that `without_rule` has made of it; compiled for an FX3U.
-[[nodiscard]] emulator_models::soft_plc::IlProgram compiled_for_fx3u(std::string_view source);
-
 }  // namespace scenarios
