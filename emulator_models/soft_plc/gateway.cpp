@@ -120,6 +120,9 @@ tl::expected<std::shared_ptr<Gateway::Ticket>, GatewayError> Gateway::submit(Gat
 Gateway::Result Gateway::take(const std::shared_ptr<Ticket>& ticket, bool keep_waiting) {
   const std::lock_guard lock{mutex_};
   if (ticket->result) return *ticket->result;
+#ifdef LTSIM_MUTANT_GATEWAY_KEEPS_GIVEN_UP  // what is given up stays in the queue
+  keep_waiting = true;
+#endif
   if (!keep_waiting) std::erase(cycles_[ticket->request.cycle].queue, ticket);
   return tl::unexpected{GatewayError::timed_out};
 }

@@ -58,7 +58,12 @@ class PlcCycle final : public ScanProgram {
   }
   void read_inputs() noexcept override { parts_.io.latch(image_.inputs); }
   void read_from_cycles() noexcept override { parts_.exchange.receive(index_, image_.memory); }
-  Progress execute(const ScanStep& step) noexcept override { return body_->execute(step); }
+  Progress execute(const ScanStep& step) noexcept override {
+#ifdef LTSIM_MUTANT_GATEWAY_BETWEEN_SLICES  // a request need not wait for the end of the scan
+    gateway_.serve(index_, image_, parts_.observer);
+#endif
+    return body_->execute(step);
+  }
   void write_to_cycles() noexcept override { parts_.exchange.send(index_, image_.memory); }
   /// The body's image is the output image.
   void refresh_output_image() noexcept override {}

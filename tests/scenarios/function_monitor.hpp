@@ -27,8 +27,13 @@ class FunctionMonitor final : public kernel_mocks::LogicTaskObserver {
   void finished(kernel_mocks::FunctionKind kind, std::uint16_t number,
                 std::chrono::nanoseconds duration) noexcept override;
 
+  /// From here on the kernel may have been told of a FIN that was none: nothing is judged any more.
+  void excuse() noexcept;
+
   /// A scan has ended.
   void scanned(const emulator_models::DeviceMemory& memory);
+  /// Its process was killed: what it was doing is not done.
+  void plc_is_dead() noexcept;
 
  private:
   struct Function {
@@ -53,6 +58,7 @@ class FunctionMonitor final : public kernel_mocks::LogicTaskObserver {
   std::map<Function, Counts> counts_;
   std::array<Seen, 3> seen_{};
   bool fin_ = false;
+  bool is_excused_ = false;
 };
 
 }  // namespace scenarios

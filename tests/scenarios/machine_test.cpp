@@ -8,6 +8,7 @@
 
 #include "emulator_models/programs/interlock_rules.hpp"
 #include "emulator_models/programs/machine_tool_program.hpp"
+#include "tests/scenarios/scenario_name.hpp"
 #include "tests/scenarios/search.hpp"
 
 namespace {
@@ -27,8 +28,10 @@ TEST_P(WholeMachine, breaks_no_rule) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, WholeMachine,
-                         ::testing::Values("machine/shift", "machine/fin-wait-removed-corrected"),
-                         [](const auto& tried) { return tried.index == 0 ? "shift" : "between_scans"; });
+                         ::testing::Values("machine/shift", "machine/shift-kernel-kills",
+                                           "machine/shift-plc-kills", "machine/shift-stalls",
+                                           "machine/shift-posts", "machine/fin-wait-removed-corrected"),
+                         &scenarios::test_name);
 
 struct MachineWithout : ::testing::TestWithParam<std::string> {};
 

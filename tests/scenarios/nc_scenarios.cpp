@@ -57,7 +57,8 @@ void run_part_program(ltsim::World& world, const PaperOptions& options) {
   scenarios::name_regions(world, segment, options);
   scenarios::FunctionMonitor monitor{world};
   static const auto plc_program = scenarios::compiled_for_fx3u(emulator_models::machine_tool_program());
-  scenarios::WatchedMachine machine{world, plc_program, monitor, std::chrono::milliseconds{10}};
+  scenarios::WatchedPlant plant{world, monitor, std::chrono::milliseconds{10}};
+  scenarios::WatchedMachine machine{plant, plc_program};
   protocol::SlaveSharedMemoryWrapper slave{segment, options};
   emulator_models::EmulatorHandler handler{slave, machine.port()};
   std::optional<kernel_mocks::RunOutcome> outcome;

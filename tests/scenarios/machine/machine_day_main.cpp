@@ -185,7 +185,8 @@ int run(const Arguments& arguments) {
 
   const soft_plc::IlProgram program = scenarios::compiled_for_fx3u(machine_tool_program());
   scenarios::FunctionMonitor functions{world};
-  scenarios::WatchedMachine machine{world, program, functions, scan_period};
+  scenarios::WatchedPlant plant{world, functions, scan_period};
+  scenarios::WatchedMachine machine{plant, program};
   FxRecorder recorder{
       {.signals = {{DeviceKind::y, 0}, {DeviceKind::y, 3}, {DeviceKind::m, 121}}}, model, SteadyTime{}};
   machine.observe_with(&recorder);
@@ -197,7 +198,7 @@ int run(const Arguments& arguments) {
 
   world.process("kernel").start("main", [&] { run_kernel(machine, functions, shift); });
   world.process("emulator").start("scan", [&] { machine.scan(); });
-  world.process("shop").start("failures", [&] { break_down(machine.plant(), arguments.seed, shift); });
+  world.process("shop").start("failures", [&] { break_down(plant.plant(), arguments.seed, shift); });
   world.process("shop").start("archive", [&] {
     for (auto passed = 0s; passed < length; passed += 1s) {
       std::this_thread::sleep_for(1s);

@@ -28,6 +28,26 @@ SCENARIO("machine/shift",
   scenarios::run_shift(world, whole_program());
 }
 
+SCENARIO("machine/shift-kernel-kills",
+         "the same shift; the kernel is killed at any time, and started again") {
+  scenarios::run_shift(world, whole_program(), {.faults = {.kernel_kills = 2}});
+}
+
+SCENARIO("machine/shift-plc-kills",
+         "the same shift; the PLC is killed at any time: its outputs drop, and it starts again") {
+  scenarios::run_shift(world, whole_program(), {.faults = {.plc_kills = 2}});
+}
+
+SCENARIO("machine/shift-stalls",
+         "the same shift; kernel and PLC get no processor for a while, calls are interrupted, the wall clock "
+         "is set") {
+  scenarios::run_shift(world, whole_program(), {.faults = {.stalls = 2, .interrupts = 3, .clock_steps = 2}});
+}
+
+SCENARIO("machine/shift-posts", "the same shift; posts of the handoff's semaphore are lost or doubled") {
+  scenarios::run_shift(world, whole_program(), {.faults = {.lost_posts = 2, .doubled_posts = 2}});
+}
+
 SCENARIO("machine/fin-wait-removed",
          "the kernel raises the next strobe while FIN may still be that of the last one") {
   scenarios::run_shift(

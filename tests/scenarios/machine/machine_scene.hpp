@@ -14,6 +14,22 @@ enum class FinWait { until_low, none };
 /// When a strobe falls.
 enum class StrobeHold { until_fin, fixed_time };
 
+/// What the world does to kernel and PLC beside holding them up: at most so often in a shift.
+struct ShiftFaults {
+  unsigned kernel_kills = 0;
+  unsigned plc_kills = 0;
+  unsigned stalls = 0;  ///< of each of the two
+  unsigned interrupts = 0;
+  unsigned clock_steps = 0;
+  unsigned lost_posts = 0;
+  unsigned doubled_posts = 0;
+
+  /// Something can be lost that only a time-out brings back.
+  [[nodiscard]] constexpr bool need_time_outs() const noexcept {
+    return plc_kills > 0 || lost_posts > 0 || doubled_posts > 0;
+  }
+};
+
 struct ShiftSetup {
   PortService service = PortService::at_scan_boundary;
   /// none: the kernel takes FIN for low as soon as it has let its strobes fall.
@@ -22,6 +38,7 @@ struct ShiftSetup {
   StrobeHold strobe_hold = StrobeHold::until_fin;
   /// The interlock to judge by; empty: all.
   std::string_view only_rule{};
+  ShiftFaults faults{};
 };
 
 /// @param program  of the PLC, compiled for an FX3U

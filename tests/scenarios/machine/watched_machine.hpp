@@ -1,16 +1,12 @@
 // The machine tool behind an FX PLC as a scenario runs it: scanned by one task, worked through the programming
-// port by another, and watched: after each scan the interlock rules are looked at, and I27.
+// port by another, and watched after each scan (watched_plant.hpp).
 #pragma once
 
 #include <atomic>
-#include <chrono>
-#include <string>
 #include <string_view>
 
 #include "emulator_models/fx_plc.hpp"
-#include "emulator_models/plants/machine_tool_rules.hpp"
-#include "sim_clock/world/world.hpp"
-#include "tests/scenarios/function_monitor.hpp"
+#include "tests/scenarios/machine/watched_plant.hpp"
 
 namespace scenarios {
 
@@ -22,10 +18,11 @@ enum class PortService {
 
 class WatchedMachine {
  public:
-  /// @param program  of the machine tool, compiled for an FX3U; must outlive this, as the others
-  WatchedMachine(ltsim::World& world, const emulator_models::soft_plc::IlProgram& program,
-                 FunctionMonitor& functions, std::chrono::nanoseconds period,
-                 PortService service = PortService::at_scan_boundary);
+  /// The PLC is switched on.
+  /// @param program  of the machine tool, compiled for an FX3U; must outlive this, as the plant
+  WatchedMachine(WatchedPlant& plant, const emulator_models::soft_plc::IlProgram& program,
+                 PortService service = PortService::at_scan_boundary,
+                 emulator_models::SteadyTime now = emulator_models::SteadyTime{});
 
   /// Body of the scanning task, until request_stop().
   void scan();
@@ -35,33 +32,25 @@ class WatchedMachine {
     if (service_ == PortService::at_scan_boundary) return port_;
     return emulator_;
   }
-  [[nodiscard]] emulator_models::MachineToolPlant& plant() noexcept { return plant_; }
-  /// Judges by this rule alone: one mistake can break several, and which of them first is a matter of chance.
-  void judge_only(std::string_view rule) { only_ = rule; }
 
   /// As FxPlc's.
   void observe_with(emulator_models::FxPlcObserver* observer) noexcept { plc_.observe_with(observer); }
   /// What the operator does after an exchange of tools that was cut short: looks where they are, and writes that
   /// into the PLC. Between two scans.
   void put_tool_table_right();
+  /// What a battery does, before the first scan: the tool table is as the dead PLC has left it. The program has
+  /// nothing else that is latched.
+  /// @param dead  nobody runs it any more
+  void keep_latched(WatchedMachine& dead);
 
  private:
   void look(emulator_models::SteadyTime now);
 
-  ltsim::World& world_;
-  FunctionMonitor& functions_;
-  std::chrono::nanoseconds period_;
+  WatchedPlant& plant_;
   PortService service_;
   emulator_models::FxPlcEmulator emulator_{protocol::fx::Model::fx3u};
   emulator_models::ScanBoundaryPort port_{emulator_};
-  emulator_models::MachineToolPlant plant_;
   emulator_models::FxPlc plc_;
-  emulator_models::MachineToolRules rules_;
-  std::string only_;  ///< empty: all
-  /// Time as the rules see it: it goes on by one period a scan at most. The program can only react when it is
-  /// scanned, and a world may let a scan come late.
-  emulator_models::SteadyTime scanned_time_{};
-  emulator_models::SteadyTime last_look_{};
   std::atomic<bool> stop_requested_{false};
 };
 

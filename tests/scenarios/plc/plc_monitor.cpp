@@ -57,6 +57,7 @@ void PlcMonitor::begin_scan(Cycle& cycle, std::size_t index, Nanoseconds scan_st
   cycle.began_after = scan_start;
   was_over_time_ = was_over_time_ || was_over_time || may_be_over_time(cycle);
   cycle.input.reset();
+  cycle.field_word.reset();
   cycle.starts.push_back(scan_start);
   check_spacing(cycle, index);
 }
@@ -75,6 +76,21 @@ void PlcMonitor::input_read(std::size_t index, std::uint64_t value) {
   Cycle& cycle = cycles_[index];
   require(cycle.input.value_or(value) == value, "I23: an input changes within a scan");
   cycle.input = value;
+}
+
+void PlcMonitor::field_words_read(std::size_t index, std::uint64_t first, std::uint64_t second) {
+  Cycle& cycle = cycles_[index];
+  require(first == second, "gateway: a scan sees one half of a write");
+  require(cycle.field_word.value_or(first) == first, "gateway: a write arrives in the middle of a scan");
+  require(!given_up_.contains(first), "gateway: a write is carried out after it was given up");
+  cycle.field_word = first;
+}
+
+void PlcMonitor::gateway_answered(std::uint64_t written, const std::array<std::uint64_t, 2>& program_words,
+                                  const std::array<std::uint64_t, 2>& field_words) {
+  require(program_words[0] == program_words[1], "gateway: a request sees a scan half done");
+  require(field_words[0] == written && field_words[1] == written,
+          "gateway: a request does not read what it has written");
 }
 
 void PlcMonitor::scan_computed(std::size_t index) {

@@ -1,6 +1,8 @@
 // I19 to I26 of a soft PLC with two cycles, judged by what can be seen from outside: orders as they are given, calls of
 // the programs, terminals at every change, the lamp.
 //
+// And what gateway.hpp promises to field devices: "gateway: ...".
+//
 // Where a moment matters it is the right one: what a call of this monitor reports has happened in the same step of the
 // world, for nothing but the unlocking of a mutex lies between. So a run is the number of RUN orders that were accepted
 // before its start, and a stop is final from the very step in which the gate was closed.
@@ -22,6 +24,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -62,6 +65,8 @@ class PlcMonitor {
   /// @param scan_start  as the program was told, by the PLC's clock
   void slice_begins(std::size_t cycle, Nanoseconds scan_start, bool first_scan);
   void input_read(std::size_t cycle, std::uint64_t value);
+  /// The pair that field devices write.
+  void field_words_read(std::size_t cycle, std::uint64_t first, std::uint64_t second);
   /// The output words of a scan that is complete are outputs_of(number), with the numbers 1, 2 ...
   void scan_computed(std::size_t cycle);
   void gave_up(std::size_t cycle);
@@ -73,6 +78,14 @@ class PlcMonitor {
 
   /// The terminals show something else, or the same again: one word for each cycle, 0 = safe.
   void terminals_written(const std::array<std::uint32_t, cycles_count>& words);
+
+  // --- by field devices, right after their call has come back ---
+  /// @param program_words  the pair that a program writes
+  /// @param field_words    the pair that the same request has written before
+  void gateway_answered(std::uint64_t written, const std::array<std::uint64_t, 2>& program_words,
+                        const std::array<std::uint64_t, 2>& field_words);
+  /// @param written  never the same twice
+  void gateway_given_up(std::uint64_t written) { given_up_.insert(written); }
 
   /// For World::whenever_idle.
   void idle();
@@ -88,8 +101,9 @@ class PlcMonitor {
     Nanoseconds first_slice{0};
     /// The scan that is watched has not begun earlier: the latest that is known of, or one after it was given up.
     Nanoseconds began_after{0};
-    std::optional<std::uint64_t> input;      ///< read in this scan
-    std::vector<std::uint64_t> computed_in;  ///< runs of scan 1, 2 ...
+    std::optional<std::uint64_t> input;       ///< read in this scan
+    std::optional<std::uint64_t> field_word;  ///< read in this scan
+    std::vector<std::uint64_t> computed_in;   ///< runs of scan 1, 2 ...
     std::vector<Nanoseconds> starts;
   };
   /// Both halves differ for each scan, and from those of another one.
@@ -114,6 +128,7 @@ class PlcMonitor {
   Nanoseconds stop_ordered_at_{-1};
   Nanoseconds held_up_at_{-watchdog_work};  ///< some task, by the host; seen while a program computed
   std::map<Nanoseconds, Nanoseconds> wrong_readings_;  ///< when what was first read, if it was not the time
+  std::set<std::uint64_t> given_up_;                   ///< writes that nothing may come of
   bool lamp_was_off_ = false;                          ///< since the latest RUN order
   bool was_over_time_ = false;                         ///< some scan of the run may have been
 };

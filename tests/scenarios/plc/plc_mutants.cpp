@@ -96,6 +96,26 @@ SHAPE("plc/o19-catch-up-without-bound",
   run(world, corrected, scenarios::catch_up_scene);
 }
 
+#elif defined(LTSIM_MUTANT_GATEWAY_BETWEEN_SLICES)
+SHAPE("plc/gateway-between-slices",
+      {.finding = "gateway",
+       .depth = 1,
+       .tasks_count = 8,
+       .cure = "requests are carried out before a scan, and not within it"},
+      "a request through the gateway need not wait for the end of a scan") {
+  run(world, corrected, scenarios::gateway_scene);
+}
+
+#elif defined(LTSIM_MUTANT_GATEWAY_KEEPS_GIVEN_UP)
+SHAPE("plc/gateway-keeps-given-up",
+      {.finding = "gateway",
+       .depth = 1,
+       .tasks_count = 8,
+       .cure = "who gives a request up takes it out of the queue"},
+      "a request through the gateway whose time is over stays in the queue") {
+  run(world, corrected, scenarios::gateway_one_thread_scene);
+}
+
 #else
 #error "which mutant?"
 #endif

@@ -1,7 +1,10 @@
 #include "tests/scenarios/plc/plc_rig.hpp"
 
+#include <array>
+#include <cstring>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "emulator_models/soft_plc/plc_threads.hpp"
 #include "tests/scenarios/plc/plc_clocks.hpp"
@@ -11,6 +14,8 @@ namespace scenarios::soft_plc {
 namespace {
 
 using namespace std::chrono_literals;
+using emulator_models::soft_plc::GatewayItem;
+using emulator_models::soft_plc::GatewayRequest;
 using emulator_models::soft_plc::IoManager;
 using emulator_models::soft_plc::OverrunRule;
 using emulator_models::soft_plc::PlcClock;
@@ -116,6 +121,37 @@ void operate(ltsim::World& world, const PlcScene& scene, SoftPlc& plc, PlcMonito
   monitor.stopped();
 }
 
+GatewayRequest make_request(std::size_t cycle, std::uint64_t value) {
+  std::vector<std::byte> word(sizeof value);
+  std::memcpy(word.data(), &value, sizeof value);
+  const auto write = [&](std::size_t first) {
+    return GatewayItem{.section = {first, word.size()}, .written = word};
+  };
+  const auto read = [](std::size_t first) { return GatewayItem{.section = {first, 16}, .written = {}}; };
+  return {.cycle = cycle, .items = {write(16), write(24), read(0), read(16)}};
+}
+
+std::array<std::uint64_t, 2> words_in(const std::vector<std::byte>& read) {
+  std::array<std::uint64_t, 2> words{};
+  std::memcpy(words.data(), read.data(), sizeof words);
+  return words;
+}
+
+/// A field device: each request writes the pair of words that is there for it, and reads both pairs.
+void ask(ltsim::World& world, const PlcScene& scene, SoftPlc& plc, PlcMonitor& monitor,
+         std::uint64_t device) {
+  for (std::uint64_t i = 1; i <= scene.field_requests; ++i) {
+    const std::uint64_t value = device << 32U | i;
+    const std::size_t cycle = world.choose("asked-cycle", PlcMonitor::cycles_count);
+    const auto answer = plc.gateway().exchange(make_request(cycle, value), scene.period);
+    if (answer) {
+      monitor.gateway_answered(value, words_in(answer->read[2]), words_in(answer->read[3]));
+    } else {
+      monitor.gateway_given_up(value);
+    }
+  }
+}
+
 void run_plc(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
   const auto inner = make_clock(scene.clock);
   const auto clock = std::make_unique<WatchedPlcClock>(monitor, *inner);
@@ -124,7 +160,11 @@ void run_plc(ltsim::World& world, const PlcScene& scene, PlcMonitor& monitor) {
   PlcThreads threads{
       *plc, *clock, scene.threading == PlcScene::Threading::one ? PlcThreading::one : PlcThreading::per_cycle,
       scene.realtime};
+  std::vector<std::thread> devices;
+  for (std::uint64_t device = 1; scene.field_requests > 0 && device <= 2; ++device)
+    devices.emplace_back([&, device] { ask(world, scene, *plc, monitor, device); });
   operate(world, scene, *plc, monitor);
+  for (std::thread& device : devices) device.join();
   monitor.set_lamp({});  // the watchdog ends, and the outputs are safe
   threads.stop();
 }

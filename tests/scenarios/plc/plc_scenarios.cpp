@@ -33,6 +33,15 @@ SCENARIO("plc/catch-up", "missed scans are made up for; the whole PLC may stand 
   run_unmutated(world, scenarios::catch_up_scene);
 }
 
+SCENARIO("plc/gateway", "field devices ask through the gateway while each cycle runs on its thread") {
+  run_unmutated(world, scenarios::gateway_scene);
+}
+
+SCENARIO("plc/gateway-one-thread",
+         "field devices ask through the gateway while all cycles run on one thread") {
+  run_unmutated(world, scenarios::gateway_one_thread_scene);
+}
+
 SHAPE("plc/o14-wall-clock",
       {.finding = "I21", .depth = 1, .tasks_count = 6, .cure = "the PLC runs on the monotonic clock"},
       "the PLC's watchdog runs on the clock that people set") {

@@ -1,5 +1,5 @@
 // What a scenario of the soft PLC is made of. All of them are one plant: two cycles, one driver over shared memory, an
-// operator who gives orders, a field device at the gateway, and a field whose inputs change.
+// operator who gives orders, two field devices at the gateway, and a field whose inputs change.
 #pragma once
 
 #include <chrono>
@@ -49,10 +49,11 @@ struct PlcScene {
   Hang hang = Hang::never;
   Operator panel = Operator::gives_orders;
   bool driver_may_fail = false;
-  unsigned stalls = 0;         ///< of the whole PLC
-  unsigned clock_steps = 0;    ///< of the wall clock
-  unsigned orders = 3;         ///< after the first RUN; or looks at the lamp
-  std::string_view only = {};  ///< the one invariant that is judged, where one mistake breaks several
+  unsigned stalls = 0;          ///< of the whole PLC
+  unsigned clock_steps = 0;     ///< of the wall clock
+  unsigned orders = 3;          ///< after the first RUN; or looks at the lamp
+  unsigned field_requests = 0;  ///< of each of two field devices
+  std::string_view only = {};   ///< the one invariant that is judged, where one mistake breaks several
 };
 
 /// Over the code as it is.

@@ -25,4 +25,10 @@ inline constexpr PlcScene restarted_scene{.threading = PlcScene::Threading::one,
 inline constexpr PlcScene catch_up_scene{
     .period = std::chrono::milliseconds{4}, .catches_up = true, .stalls = 1, .orders = 2};
 
+inline constexpr PlcScene gateway_scene{.hang = PlcScene::Hang::may, .field_requests = 4, .only = "gateway"};
+inline constexpr PlcScene gateway_one_thread_scene{.threading = PlcScene::Threading::one,
+                                                   .hang = PlcScene::Hang::may,
+                                                   .field_requests = 4,
+                                                   .only = "gateway"};
+
 }  // namespace scenarios

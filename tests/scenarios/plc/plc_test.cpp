@@ -35,7 +35,9 @@ TEST_P(PlcTest, is_never_accused) {
                                        << to_string(report.failures.front().schedule);
 }
 
-INSTANTIATE_TEST_SUITE_P(Plc, PlcTest, testing::Values("plc/catch-up", "plc/one-thread", "plc/threads"),
+INSTANTIATE_TEST_SUITE_P(Plc, PlcTest,
+                         testing::Values("plc/catch-up", "plc/gateway", "plc/gateway-one-thread",
+                                         "plc/one-thread", "plc/threads"),
                          &scenarios::test_name);
 
 TEST(PlcMutants, exist_for_each_of_I19_to_I26) {

@@ -1,5 +1,6 @@
 // The program of a cycle as the monitor wants it: two slices, each of which reads the inputs and writes half of the outputs.
-// It has one memory word, which field devices write in pairs through the gateway.
+// Its memory is two pairs of words: one that the program writes, a word a slice, so that they are equal between two scans;
+// and one that field devices write through the gateway, whole.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,7 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
     std::fill_n(mask_.begin() + static_cast<std::ptrdiff_t>(4 * cycle), 4, std::byte{0xFF});
   }
 
-  CycleImage image() noexcept override { return {inputs_, outputs_, {}}; }
+  CycleImage image() noexcept override { return {inputs_, outputs_, memory_}; }
   std::span<const std::byte> output_mask() const noexcept override { return mask_; }
   void start(StartKind /*kind*/) noexcept override {
     begin_anew();
@@ -43,6 +44,7 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
   }
   void give_up_scan() noexcept override {
     begin_anew();
+    std::copy_n(memory_.begin(), 8, memory_.begin() + 8);
     monitor_.gave_up(cycle_);
   }
 
@@ -50,9 +52,12 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
     monitor_.slice_begins(cycle_, step.scan_start, step.first_scan);
     if (std::exchange(scan_is_new_, false)) ++scan_;
     monitor_.input_read(cycle_, input());
+    monitor_.field_words_read(cycle_, word(16), word(24));
     const std::uint32_t wanted = monitor_.next_outputs(cycle_);
     const std::size_t half = slice_ == 0 ? 0 : 2;
     std::memcpy(&outputs_[4 * cycle_ + half], reinterpret_cast<const std::byte*>(&wanted) + half, 2);
+    const std::uint64_t number = wanted;
+    std::memcpy(&memory_[slice_ == 0 ? 0 : 8], &number, sizeof number);
     if (is_held_up()) return Progress::unfinished;
     if (++slice_ < 2) return Progress::unfinished;
     begin_anew();
@@ -71,6 +76,12 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
     std::uint64_t latched = 0;
     std::memcpy(&latched, inputs_.data(), sizeof latched);
     return latched;
+  }
+
+  [[nodiscard]] std::uint64_t word(std::size_t first) const noexcept {
+    std::uint64_t value = 0;
+    std::memcpy(&value, &memory_[first], sizeof value);
+    return value;
   }
 
   /// @return whether the slice has to be done again
@@ -110,6 +121,7 @@ class WatchedBody final : public emulator_models::soft_plc::CycleBody {
   std::array<std::byte, 8> inputs_{};
   std::array<std::byte, 8> outputs_{};
   std::array<std::byte, 8> mask_{};
+  std::array<std::byte, 32> memory_{};
 };
 
 }  // namespace scenarios::soft_plc
