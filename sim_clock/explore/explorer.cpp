@@ -161,6 +161,7 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                               .outcome = outcome.kind,
                               .message = one_line(outcome.message),
                               .cpu = world_.scheduler().cpu(),
+                              .input = world_.input_records(),
                               .deviations = recording.deviations()},
                  .choices_count = recording.deviations().size(),
                  .story = {},
@@ -189,6 +190,7 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
   const SignalGuard signals;
   world_.set_default_cpu(schedule.cpu);
+  world_.set_input(schedule.input);
   {
     // What is initialised on first use was so when the schedule was recorded.
     AnchorTracker anchors{world_, nullptr};

@@ -20,12 +20,36 @@ constexpr double end_of_leaving_out = 0.6;
 constexpr double end_of_search = 0.9;
 constexpr double end_of_budget = 1.0;
 
-std::vector<Deviation> without(const std::vector<Deviation>& deviations, std::size_t begin, std::size_t end) {
-  std::vector<Deviation> rest;
-  for (std::size_t i = 0; i < deviations.size(); ++i) {
-    if (i < begin || i >= end) rest.push_back(deviations[i]);
+template <typename Line>
+std::vector<Line> without(const std::vector<Line>& lines, std::size_t begin, std::size_t end) {
+  std::vector<Line> rest;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i < begin || i >= end) rest.push_back(lines[i]);
   }
   return rest;
+}
+
+/// Delta debugging: leaves out pieces of something, large ones first, as long as what is left will do.
+/// @param size        how many parts it has now
+/// @param leave_out   tries it without [begin, end), end may be beyond its size: whether it is shorter now
+/// @param has_budget  whether to go on
+/// @return            whether each single part was found to be needed
+template <typename Size, typename LeaveOut, typename HasBudget>
+bool leave_out_pieces(const Size& size, const LeaveOut& leave_out, const HasBudget& has_budget) {
+  std::size_t chunk = std::max<std::size_t>(size(), 1);
+  while (true) {
+    bool shorter = false;
+    for (std::size_t begin = 0; begin < size();) {
+      if (!has_budget()) return false;
+      if (leave_out(begin, begin + chunk)) {
+        shorter = true;  // what lies at `begin` now is the next piece
+      } else {
+        begin += chunk;
+      }
+    }
+    if (chunk == 1 && !shorter) return true;
+    if (!shorter || chunk > size()) chunk = std::max<std::size_t>(chunk / 2, 1);
+  }
 }
 
 bool is_slow_moment(const Deviation& deviation) noexcept {
@@ -37,6 +61,7 @@ bool is_slow_moment(const Deviation& deviation) noexcept {
 MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOptions& options) {
   const SignalGuard signals;
   world_.set_default_cpu(failing.cpu);
+  world_.set_input(failing.input);
   SearchBudget budget{options.executions_max, options.points_max, options.seconds_max};
   budget_ = &budget;
   is_the_failure_ = [&](const Outcome& outcome) { return same_failure(outcome, failing); };
@@ -47,6 +72,7 @@ MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOption
   if (auto given = attempt(failing.deviations)) {
     report.reproduced = true;
     best_ = std::move(*given);
+    leave_out_input();
     leave_out_lines();
     const auto is_alike = [&](const Outcome& outcome) { return alike_failure(outcome, failing); };
     if (join_slow_moments()) leave_out_lines();
@@ -68,6 +94,8 @@ MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOption
     strengthen_anchors();
     shrink_magnitudes();
     report.one_minimal = leave_out_lines();
+    report.one_minimal = leave_out_input() && report.one_minimal;
+    report.schedule.input = world_.input_records();
     report.schedule.deviations = best_.deviations;
     report.schedule.message = one_line(best_.outcome.message);
     report.outcome = best_.outcome;
@@ -117,22 +145,51 @@ std::optional<Minimizer::Attempt> Minimizer::attempt(const AddressedSchedule& ad
 }
 
 bool Minimizer::leave_out_lines() {
-  std::size_t chunk = std::max<std::size_t>(best_.deviations.size(), 1);
-  while (true) {
-    bool shorter = false;
-    for (std::size_t begin = 0; begin < best_.deviations.size();) {
-      if (!has_budget(best_.deviations.size() > 16 ? end_of_leaving_out : end_of_budget)) return false;
-      auto rest = attempt(without(best_.deviations, begin, begin + chunk));
-      if (rest && rest->deviations.size() < best_.deviations.size()) {
+  return leave_out_pieces(
+      [this] { return best_.deviations.size(); },
+      [this](std::size_t begin, std::size_t end) {
+        auto rest = attempt(without(best_.deviations, begin, end));
+        if (!rest || rest->deviations.size() >= best_.deviations.size()) return false;
         best_ = std::move(*rest);
-        shorter = true;  // what lies at `begin` now is the next piece
-      } else {
-        begin += chunk;
-      }
-    }
-    if (chunk == 1 && !shorter) return true;
-    if (!shorter || chunk > best_.deviations.size()) chunk = std::max<std::size_t>(chunk / 2, 1);
+        return true;
+      },
+      [this] { return has_budget(best_.deviations.size() > 16 ? end_of_leaving_out : end_of_budget); });
+}
+
+bool Minimizer::leave_out_input() {
+  const auto records = [this]() -> const std::vector<std::string>& { return world_.input_records(); };
+  const auto leave_out = [&] {
+    return leave_out_pieces([&] { return records().size(); },
+                            [&](std::size_t begin, std::size_t end) {
+                              return still_fails_with_input(without(records(), begin, end));
+                            },
+                            [this] { return has_budget(end_of_leaving_out); });
+  };
+  if (records().empty()) return true;
+  static_cast<void>(leave_out());
+  for (std::size_t i = 0; i < records().size(); ++i) {
+    static_cast<void>(leave_out_pieces([&] { return records()[i].size(); },
+                                       [&](std::size_t begin, std::size_t end) {
+                                         std::vector<std::string> changed = records();
+                                         changed[i].erase(begin, std::min(end, changed[i].size()) - begin);
+                                         return !changed[i].empty() &&
+                                                still_fails_with_input(std::move(changed));
+                                       },
+                                       [this] { return has_budget(end_of_leaving_out); }));
   }
+  return leave_out();
+}
+
+bool Minimizer::still_fails_with_input(std::vector<std::string> records) {
+  std::vector<std::string> before = world_.input_records();
+  world_.set_input(std::move(records));
+  auto found = attempt(best_.deviations);
+  if (found && found->deviations.size() <= best_.deviations.size()) {
+    best_ = std::move(*found);
+    return true;
+  }
+  world_.set_input(std::move(before));
+  return false;
 }
 
 bool Minimizer::join_slow_moments() {

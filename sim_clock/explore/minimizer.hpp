@@ -4,6 +4,7 @@
 //   1  lines are left out, many at once and then one by one, as long as the failure stays (delta debugging);
 //      where time passes again and again, as for a peer that polls, one silence of who was held up is tried for
 //      all of it;
+//      the records of an input that the scenario reads likewise, and then bytes of those that are left;
 //   2  whatever was found by then, shorter schedules are searched for (schedule_search.hpp), first among
 //      deviations like those that are left, then among all;
 //   3  of equivalent places for a line the one is taken that is most likely to survive a rebuild;
@@ -68,6 +69,11 @@ class Minimizer {
 
   /// @return whether each line was found to be needed
   bool leave_out_lines();
+  /// Leaves out records of the world's input, then bytes within those that stay.
+  /// @return whether each record was found to be needed
+  bool leave_out_input();
+  /// @return whether that input fails, too; the world keeps it then, and has the old one again otherwise
+  bool still_fails_with_input(std::vector<std::string> records);
   /// Puts silences of those who were held up in place of the lines that let time pass for everybody, one for all
   /// the lines in a row. @return whether that fails too, with fewer lines
   bool join_slow_moments();

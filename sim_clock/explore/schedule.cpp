@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "sim_clock/explore/duration_text.hpp"
+#include "sim_clock/explore/quoted_bytes.hpp"
 
 namespace ltsim {
 namespace {
 
-constexpr std::string_view header = "ltsim schedule 1";
 constexpr std::string_view only_memory = "sc";
 
 /// Words are separated by any number of blanks.
@@ -151,6 +151,13 @@ std::string to_string(const Deviation& deviation) {
   return {};
 }
 
+std::vector<std::string> input_lines(const Schedule& schedule) {
+  std::vector<std::string> lines;
+  for (const std::string& record : schedule.input)
+    lines.push_back(fmt::format("input     {}", quoted(record)));
+  return lines;
+}
+
 std::string one_line(std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   return message;
@@ -159,9 +166,10 @@ std::string one_line(std::string message) {
 std::string to_string(const Schedule& schedule) {
   const std::string message = one_line(schedule.message);
   std::string text =
-      fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", header, schedule.scenario,
+      fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", schedule_header, schedule.scenario,
                   only_memory, schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
                   to_string(schedule.outcome), message.empty() ? "" : ": ", message);
+  for (const std::string& line : input_lines(schedule)) text += line + "\n";
   for (const Deviation& deviation : schedule.deviations) text += to_string(deviation) + "\n";
   return text;
 }
@@ -182,8 +190,8 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     const auto words = words_of(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     if (!header_seen) {
-      if (join(words, 0, words.size()) != header)
-        return error(fmt::format("a schedule begins with \"{}\"", header));
+      if (join(words, 0, words.size()) != schedule_header)
+        return error(fmt::format("a schedule begins with \"{}\"", schedule_header));
       header_seen = true;
     } else if (words.front() == "scenario") {
       if (words.size() != 2) return error("a scenario line names one scenario");
@@ -205,6 +213,10 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       schedule.message = colon == rest.size()
                              ? ""
                              : rest.substr(std::min(rest.find_first_not_of(' ', colon + 1), rest.size()));
+    } else if (words.front() == "input") {
+      auto record = parse_quoted(rest_after_first_word(line));
+      if (!record) return error(std::move(record.error()));
+      schedule.input.push_back(std::move(*record));
     } else if (words.front() == "switch" || words.front() == "time" || words.front() == "stall" ||
                words.front() == "fault" || words.front() == "crash" || words.front() == "choose") {
       auto deviation = parse_deviation(words);
@@ -213,13 +225,14 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       schedule.deviations.push_back(std::move(*deviation));
     } else {
       return error(fmt::format(
-          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, switch, "
+          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, input, switch, "
           "time, stall, fault, crash, choose",
           words.front()));
     }
   }
   number = number == 0 ? 1 : number;
-  if (!header_seen) return error(fmt::format("the file is empty; a schedule begins with \"{}\"", header));
+  if (!header_seen)
+    return error(fmt::format("the file is empty; a schedule begins with \"{}\"", schedule_header));
   if (schedule.scenario.empty()) return error("no line says which scenario this is a schedule of");
   return schedule;
 }

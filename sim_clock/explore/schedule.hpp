@@ -12,6 +12,9 @@
 //   crash     kernel/main    before sem_post handoff #3             of emulator
 //   choose    kernel/main    asks delay #1                          3
 //
+// A scenario that reads an input, as a fuzz target does, has that in its schedule as well, a record a line:
+//   input     "\x02010F604\x0374"
+//
 // The default: the running task goes on until it blocks, then the task with the lowest number that can run; a
 // task that yields lets the next one run; time passes only when nobody can run; the scenario's questions are
 // answered with 0; no fault strikes. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
@@ -38,6 +41,9 @@
 #include "sim_clock/world/fault_kind.hpp"
 
 namespace ltsim {
+
+/// How a schedule file begins.
+inline constexpr std::string_view schedule_header = "ltsim schedule 1";
 
 struct Deviation {
   enum class Kind : std::uint8_t { switch_task, pass_time, stall, fault, choose };
@@ -67,8 +73,12 @@ struct Schedule {
   OutcomeKind outcome = OutcomeKind::passed;
   std::string message;  ///< of the outcome; one line
   Cpu cpu = Cpu::many;
+  std::vector<std::string> input;  ///< records of World::input(); together they are it
   std::vector<Deviation> deviations;
 };
+
+/// The lines of a schedule file that hold its input, without their ends.
+[[nodiscard]] std::vector<std::string> input_lines(const Schedule& schedule);
 
 /// The message as a schedule holds it.
 [[nodiscard]] std::string one_line(std::string message);

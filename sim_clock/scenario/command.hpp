@@ -34,6 +34,7 @@ struct UsageError {
 using Command = std::function<int(std::string_view program)>;
 
 // Each adds one subcommand; when that is the one on the command line, parsing sets `chosen`.
+void add_fuzz_command(CLI::App& app, Command& chosen);
 void add_list_command(CLI::App& app, Command& chosen);
 void add_explore_command(CLI::App& app, Command& chosen);
 void add_minimize_command(CLI::App& app, Command& chosen);

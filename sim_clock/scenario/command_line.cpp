@@ -22,6 +22,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_replay_command(app, chosen);
   add_minimize_command(app, chosen);
   add_zoo_command(app, chosen);
+  add_fuzz_command(app, chosen);
   try {
     app.parse(argc, argv);
     return chosen(argv[0]);

@@ -1,5 +1,4 @@
-// The command line that every scenario program has: list, explore, replay,
-// minimize.
+// The command line that every scenario program has: list, explore, replay, minimize, zoo, fuzz.
 //
 // Exit codes: 0 nothing found, 1 a failure was found, 2 bad usage or an unreadable file, 3 our own fault.
 #pragma once

@@ -17,6 +17,10 @@ struct MinimizeArguments {
   double seconds = 10;
 };
 
+std::size_t lines_count(const Schedule& schedule) {
+  return schedule.input.size() + schedule.deviations.size();
+}
+
 int minimize(const MinimizeArguments& arguments, std::string_view program) {
   const Schedule schedule = read_schedule(arguments.file);
   const Scenario& scenario = scenario_of_name(schedule.scenario);
@@ -33,8 +37,9 @@ int minimize(const MinimizeArguments& arguments, std::string_view program) {
   fmt::print(
       "{}  {}{}{}\n  {} lines, minimized to {} in {} executions{}\n", scenario.name,
       to_string(report.outcome.kind), report.outcome.message.empty() ? "" : ": ", report.outcome.message,
-      schedule.deviations.size(), report.schedule.deviations.size(), report.executions,
+      lines_count(schedule), lines_count(report.schedule), report.executions,
       report.one_minimal ? "; without any one of them the failure is gone" : "; more time may leave fewer");
+  for (const std::string& line : input_lines(report.schedule)) fmt::print("    {}\n", line);
   for (const Deviation& deviation : report.schedule.deviations) fmt::print("    {}\n", to_string(deviation));
   fmt::print("  replay:  {} replay {}\n", as_shell_word(std::string{program}), as_shell_word(file));
   return exit_failure_found;

@@ -47,6 +47,9 @@ int replay(const ReplayArguments& arguments) {
   if (!same_failure(report.outcome, schedule)) {
     fmt::print("  not as recorded: {}{}{}\n", to_string(schedule.outcome),
                schedule.message.empty() ? "" : ": ", schedule.message);
+    if (!schedule.input.empty() && schedule.message.find("Sanitizer") != std::string::npos) {
+      fmt::print("  a sanitizer found that: run the target's program of a build with it, with this file\n");
+    }
   }
   return report.outcome.passed() ? exit_nothing_found : exit_failure_found;
 }

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
+#include <string>
+
+#include "sim_clock/scenario/fuzz_target.hpp"
 
 namespace ltsim {
 namespace {
@@ -12,18 +16,7 @@ std::vector<Scenario>& registry() {
   return all;
 }
 
-}  // namespace
-
-const std::vector<Scenario>& scenarios() { return registry(); }
-
-const Scenario* find_scenario(std::string_view name) {
-  const auto found =
-      std::find_if(registry().begin(), registry().end(), [&](const Scenario& s) { return s.name == name; });
-  return found == registry().end() ? nullptr : &*found;
-}
-
-ScenarioRegistration::ScenarioRegistration(std::string_view name, std::string_view description,
-                                           void (*body)(World&)) {
+void add(std::string_view name, std::string_view description, std::function<void(World&)> body) {
   auto& all = registry();
   const auto place = std::lower_bound(all.begin(), all.end(), name,
                                       [](const Scenario& s, std::string_view n) { return s.name < n; });
@@ -31,7 +24,46 @@ ScenarioRegistration::ScenarioRegistration(std::string_view name, std::string_vi
     std::fprintf(stderr, "two scenarios are called %.*s\n", static_cast<int>(name.size()), name.data());
     std::exit(2);
   }
-  all.insert(place, Scenario{.name = name, .description = description, .body = body});
+  all.insert(place, Scenario{.name = name, .description = description, .body = std::move(body)});
+}
+
+/// One task of one process that reads the input.
+void run_target(World& world, const FuzzTarget& target) {
+  world.process("target").start("main", [&world, &target] {
+    try {
+      target.run(std::as_bytes(std::span{world.input()}));
+    } catch (const BrokenPromise& broken) {
+      world.violated(broken.what());
+    }
+  });
+  world.run();
+}
+
+/// The registry with the fuzz targets, which only main() can be sure to find complete.
+std::vector<Scenario>& complete_registry() {
+  static std::deque<std::string> names;  // a registered name is a view
+  if (names.empty()) {
+    for (const FuzzTarget& target : fuzz_targets()) {
+      add(names.emplace_back("fuzz/" + std::string{target.name}), target.description,
+          [&target](World& world) { run_target(world, target); });
+    }
+  }
+  return registry();
+}
+
+}  // namespace
+
+const std::vector<Scenario>& scenarios() { return complete_registry(); }
+
+const Scenario* find_scenario(std::string_view name) {
+  const auto& all = complete_registry();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Scenario& s) { return s.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+ScenarioRegistration::ScenarioRegistration(std::string_view name, std::string_view description,
+                                           void (*body)(World&)) {
+  add(name, description, body);
 }
 
 }  // namespace ltsim

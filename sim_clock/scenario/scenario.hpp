@@ -11,6 +11,7 @@
 // it.
 #pragma once
 
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -21,10 +22,10 @@ namespace ltsim {
 struct Scenario {
   std::string_view name;  ///< "group/what", without blanks
   std::string_view description;
-  void (*body)(World& world);
+  std::function<void(World& world)> body;
 };
 
-/// All scenarios of this program, by name.
+/// All scenarios of this program, by name; with "fuzz/NAME" for each FUZZ_TARGET(), whose bytes are World::input().
 [[nodiscard]] const std::vector<Scenario>& scenarios();
 /// @return null if there is none of that name
 [[nodiscard]] const Scenario* find_scenario(std::string_view name);

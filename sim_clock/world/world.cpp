@@ -150,6 +150,12 @@ std::string World::blocked_in(std::string_view task_name) const {
   return {};
 }
 
+void World::set_input(std::vector<std::string> records) {
+  input_records_ = std::move(records);
+  input_.clear();
+  for (const std::string& record : input_records_) input_ += record;
+}
+
 void World::reset(Strategy& strategy, StepListener* listener) {
   static std::uint64_t executions_ever = 0;  // of all worlds
   execution_number_ = execution_number_mark << execution_number_bits | ++executions_ever;

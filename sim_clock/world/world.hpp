@@ -146,6 +146,10 @@ class World {
     return scheduler_.choose(what, count);
   }
 
+  /// Bytes for the scenario to read, the same in each execution, and kept in the schedule; empty by default. What a fuzz
+  /// target is run on.
+  [[nodiscard]] const std::string& input() const noexcept { return input_; }
+
   /// Gives bytes of a segment a name of their own for schedules and traces.
   /// @param segment  name of the segment without '/'; it may be created later
   /// @param region   e.g. "segment.request"
@@ -223,6 +227,10 @@ class World {
   /// Forgets the last execution. `listener` may be null. From here to end_execution() the world is the
   /// scenario's.
   void reset(Strategy& strategy, StepListener* listener);
+  /// What input() is in the executions from the next one on.
+  /// @param records  together they are the input
+  void set_input(std::vector<std::string> records);
+  [[nodiscard]] const std::vector<std::string>& input_records() const noexcept { return input_records_; }
   /// Which processors the machine has in the executions from the next one on, unless their scenario says
   /// otherwise. Cpu::many at first.
   void set_default_cpu(Cpu cpu) noexcept { default_cpu_ = cpu; }
@@ -325,6 +333,8 @@ class World {
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
   Cpu default_cpu_ = Cpu::many;
+  std::vector<std::string> input_records_;
+  std::string input_;
   std::uint64_t execution_number_ = 0;
   std::uint64_t random_draws_count_ = 0;
   SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock

@@ -177,6 +177,41 @@ INSTANTIATE_TEST_SUITE_P(Depths, BugTest,
                                          Bug{"three_half_done", &three_half_done, 3}),
                          [](const auto& bug) { return bug.param.name; });
 
+/// The failure needs both commands, in this order, and nothing else of the input.
+void stop_after_run(World& world) {
+  world.process("p").start("reader", [&world] {
+    const std::size_t run = world.input().find("RUN");
+    if (run != std::string::npos && world.input().find("STOP", run) != std::string::npos)
+      world.violated("stopped");
+  });
+  world.run();
+}
+
+TEST_F(MinimizerTest, takes_records_away_from_an_input_and_then_bytes) {
+  Schedule schedule;
+  schedule.scenario = "demo/minimized";
+  schedule.outcome = OutcomeKind::invariant;
+  schedule.message = "stopped";
+  for (int i = 0; i < 20; ++i)
+    schedule.input.push_back(i == 3 ? "xxRUNy\n" : i == 17 ? "STOPPED\n" : "noise\n");
+  const MinimizeReport report = minimize(&stop_after_run, schedule, without_clock);
+  ASSERT_TRUE(report.reproduced);
+  EXPECT_TRUE(report.one_minimal);
+  EXPECT_EQ(report.schedule.input, (std::vector<std::string>{"RUN", "STOP"}));
+  EXPECT_EQ(replay(&stop_after_run, report.schedule).outcome.message, "stopped");
+}
+
+TEST_F(MinimizerTest, leaves_an_input_alone_that_does_not_fail) {
+  Schedule schedule;
+  schedule.scenario = "demo/minimized";
+  schedule.outcome = OutcomeKind::invariant;
+  schedule.message = "stopped";
+  schedule.input = {"STOP\n", "RUN\n"};
+  const MinimizeReport report = minimize(&stop_after_run, schedule, without_clock);
+  EXPECT_FALSE(report.reproduced);
+  EXPECT_EQ(report.schedule.input, schedule.input);
+}
+
 TEST_F(MinimizerTest, ends_with_the_smallest_answer_and_a_round_duration) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const MinimizeReport report = minimize(&late_answer, failing_schedule(&late_answer, seed), without_clock);

@@ -63,6 +63,32 @@ TEST(Schedule, what_was_written_reads_back_equal) {
   EXPECT_EQ(again->message, schedule->message);
 }
 
+TEST(Schedule, an_input_is_written_and_read_record_by_record) {
+  Schedule schedule;
+  schedule.scenario = "fuzz/fx-frame";
+  schedule.input = {std::string{"\x02\"10\\F\x03\0\xff", 9}, "M3 S500\n", "", "\r\t # no comment"};
+  const std::string text = to_string(schedule);
+  EXPECT_NE(text.find("\ninput     \"\\x02\\\"10\\\\F\\x03\\x00\\xff\"\n"), std::string::npos) << text;
+  const auto again = parse_schedule(text);
+  ASSERT_TRUE(again) << again.error().reason;
+  EXPECT_EQ(again->input, schedule.input);
+}
+
+TEST(Schedule, an_input_that_is_no_quoted_text_is_refused_with_what_is_wrong) {
+  const auto reason = [](const std::string& record) {
+    const auto schedule = parse_schedule("ltsim schedule 1\nscenario a/b\ninput " + record + "\n");
+    return schedule ? "" : std::to_string(schedule.error().line) + ": " + schedule.error().reason;
+  };
+  EXPECT_EQ(reason("\"\\x4f\\x4F\""), "");
+  for (const char* unquoted : {"", "02", "'a'"})
+    EXPECT_EQ(reason(unquoted), "3: the bytes stand in double quotes");
+  for (const char* escape : {"\"\\a\"", "\"\\\"", "\"\\x0\"", "\"\\xg0\"", "\"\\x+1\""})
+    EXPECT_EQ(reason(escape).substr(0, 18), "3: behind a backsl") << escape;
+  for (const char* end : {"\"a", "\"a\"b", "\"a\" \"b\""})
+    EXPECT_EQ(reason(end), "3: the bytes end with a double quote, and the line with it") << end;
+  EXPECT_EQ(reason("\"\x7f\""), "3: byte 0x7f is to be written as \\x7f");
+}
+
 TEST(Schedule, the_one_processor_of_a_machine_is_written_and_read) {
   Schedule schedule;
   schedule.scenario = "a/b";
