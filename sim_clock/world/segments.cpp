@@ -101,11 +101,10 @@ void Segments::leave(std::string_view path, std::span<const std::byte> content) 
     return;
   }
   Segment& segment = create(name);
+  grow(segment, content.size());
   std::byte* const bytes = all_ + (index_of(segment) << window_shift);
   std::memcpy(bytes, content.data(), content.size());
-  std::memset(bytes + content.size(), 0, page_end(content.size()) - content.size());
-  segment.bytes = content.size();
-  world_.checks().accept_change(static_cast<SharedPlace>(bytes - all_), page_end(content.size()));
+  world_.checks().accept_change(static_cast<SharedPlace>(bytes - all_), content.size());
 }
 
 Segments::Segment& Segments::create(std::string_view name) {
@@ -142,13 +141,22 @@ int Segments::resize(int descriptor, off_t bytes) noexcept {
     world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
   }
   if (wanted > segment->bytes) {
-    // The rest of the last page, too: it can be touched, and must not show what another execution left.
-    const std::size_t begin = (index_of(*segment) << window_shift) + segment->bytes;
-    std::memset(all_ + begin, 0, page_end(wanted) - segment->bytes);
-    world_.checks().accept_change(static_cast<SharedPlace>(begin), page_end(wanted) - segment->bytes);
+    grow(*segment, wanted);
+  } else {
+    segment->bytes = wanted;
   }
-  segment->bytes = wanted;
   return 0;
+}
+
+void Segments::grow(Segment& segment, std::size_t bytes) noexcept {
+  // The rest of the last page, too, as far as it was used: it can be touched, and must not show what another execution left. To
+  // fill it whole takes as long as two scheduling points.
+  const std::size_t end = std::max(bytes, std::min(page_end(bytes), segment.used_bytes));
+  const std::size_t begin = (index_of(segment) << window_shift) + segment.bytes;
+  std::memset(all_ + begin, 0, end - segment.bytes);
+  world_.checks().was_zeroed(static_cast<SharedPlace>(begin), end - segment.bytes);
+  if (segment.used_bytes <= end) segment.used_bytes = bytes;
+  segment.bytes = bytes;
 }
 
 int Segments::status(int descriptor, struct stat& into) noexcept {
@@ -157,12 +165,20 @@ int Segments::status(int descriptor, struct stat& into) noexcept {
     errno = EBADF;
     return -1;
   }
-  std::memset(&into, 0, sizeof into);
-  into.st_mode = S_IFREG | 0600;
+  // One by one: what compilers make of a fill of this size ("rep stos") takes longer to begin than all of this.
+  into.st_dev = 0;
   into.st_ino = index_of(*segment) + 1;
   into.st_nlink = segment->linked ? 1 : 0;
+  into.st_mode = S_IFREG | 0600;
+  into.st_uid = 0;
+  into.st_gid = 0;
+  into.st_rdev = 0;
   into.st_size = static_cast<off_t>(segment->bytes);
   into.st_blksize = 4096;
+  into.st_blocks = 0;
+  into.st_atim = {};
+  into.st_mtim = {};
+  into.st_ctim = {};
   return 0;
 }
 
@@ -242,7 +258,7 @@ void Segments::process_died(ProcessId process) noexcept {
 
 void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind,
                       std::uint32_t site) noexcept {
-  const Place place = locate(address, kind);
+  const Place place = locate(address, bytes, kind);
   const std::uint64_t points_before = world_.scheduler().points();
   world_.scheduler().point({.kind = kind,
                             .bytes = static_cast<std::uint8_t>(bytes),
@@ -250,7 +266,7 @@ void Segments::access(const volatile void* address, std::size_t bytes, Operation
                             .offset = place.offset,
                             .site = site});
   const bool others_ran = world_.scheduler().points() != points_before + 1;
-  if (others_ran) static_cast<void>(locate(address, kind));
+  if (others_ran) static_cast<void>(locate(address, bytes, kind));
   if (world_.damages().are_possible()) [[unlikely]] {
     const std::size_t index = segment_of_window(window_of(address));
     world_.damages().choose(segments_[index].name, {all_ + (index << window_shift), segments_[index].bytes});
@@ -282,7 +298,10 @@ void Segments::announce_write(const volatile void* address, std::size_t bytes) n
 }
 
 void Segments::accept_change(const volatile void* address, std::size_t bytes) noexcept {
-  if (contains(address)) world_.checks().accept_change(place_of(address), bytes);
+  if (!contains(address)) return;
+  Segment& segment = segments_[segment_of_window(window_of(address))];
+  segment.used_bytes = std::max(segment.used_bytes, offset_of(address) + bytes);
+  world_.checks().accept_change(place_of(address), bytes);
 }
 
 void Segments::accept_change(ObjectId segment, std::uint32_t offset, std::size_t bytes) noexcept {
@@ -308,9 +327,10 @@ void Segments::changed_unseen(SharedPlace place, std::string_view noticed) {
       offset_in_segment(place), world_.objects().object_name(segment_at(place)), noticed));
 }
 
-Segments::Place Segments::locate(const volatile void* address, OperationKind kind) noexcept {
+Segments::Place Segments::locate(const volatile void* address, std::size_t bytes,
+                                 OperationKind kind) noexcept {
   const std::size_t number = window_of(address);
-  const Segment& segment = segments_[segment_of_window(number)];
+  Segment& segment = segments_[segment_of_window(number)];
   const std::uint32_t offset = offset_of(address);
   const Window& window = windows_[number];
   // Linux maps whole pages: bytes between the end of the object and the end of its last page can be touched.
@@ -323,6 +343,8 @@ Segments::Place Segments::locate(const volatile void* address, OperationKind kin
         fmt::format("access to byte {} of segment {}, which is not mapped there (SIGSEGV or SIGBUS)", offset,
                     world_.objects().object_name(segment.object)));
   }
+  if (offset + bytes > segment.bytes) [[unlikely]]
+    segment.used_bytes = std::max(segment.used_bytes, offset + bytes);
   return {.object = segment.object, .offset = offset};
 }
 

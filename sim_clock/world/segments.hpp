@@ -115,6 +115,9 @@ class Segments {
     ObjectId object = 0;
     std::size_t bytes = 0;
     bool linked = false;
+    /// All its bytes from here on are zero, in the memory and in the copy that the checks keep; kept between
+    /// executions. Bytes of the segment itself count as used, those behind it once they were accessed.
+    std::size_t used_bytes = 0;
   };
   struct Window {
     bool has_memory = false;  // the address range is backed by the segment's bytes; kept between executions
@@ -143,11 +146,13 @@ class Segments {
     std::uint32_t offset;
   };
   /// Ends the execution as a crash if the running task cannot access the address so.
-  [[nodiscard]] Place locate(const volatile void* address, OperationKind kind) noexcept;
+  [[nodiscard]] Place locate(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
   void changed_unseen(SharedPlace place, std::string_view noticed);
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
   /// There must be room for it.
   Segment& create(std::string_view name);
+  /// @param bytes  more than it has
+  void grow(Segment& segment, std::size_t bytes) noexcept;
   /// @return null for a descriptor that is closed or never was
   [[nodiscard]] Descriptor* find_descriptor(int descriptor) noexcept;
   [[nodiscard]] Segment* of_descriptor(int descriptor) noexcept;
