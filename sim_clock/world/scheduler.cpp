@@ -188,24 +188,29 @@ void Scheduler::point(Operation operation) noexcept {
   pending = operation;
   clock_.pass(point_cost);
   ++points_;
-  if (in_fair_tail()) [[unlikely]]
+  bool fair_tail = in_fair_tail();
+  if (fair_tail) [[unlikely]]
     pass_fair_tail(self, pending);
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, pending);
-  if (clock_.next_deadline() <= clock_.now()) wake_due();
+  if (clock_.any_armed() && clock_.next_deadline() <= clock_.now()) wake_due();
   if (world_.faults().any_at_each_point()) [[unlikely]] {
     if (world_.faults().crash_is_possible()) world_.faults().choose_crash();
     if (self.state == Task::State::killed) leave_killed();
     if (world_.faults().can_strike(FaultKind::process_stall)) world_.faults().choose_stall();
     wait_for_processor();
+    fair_tail = in_fair_tail();
   }
   const bool give_way = gives_way(self, operation);
-  if (in_fair_tail() && give_way) [[unlikely]]
+  if (fair_tail && give_way) [[unlikely]]
     skip_time_if_all_give_way();
-  if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
+  if (clock_.any_armed() || clock_was_read_) {
+    choose_slow_moment();
+    fair_tail = in_fair_tail();
+  }
   if (runnable_count_ > 1) {
     // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
-    const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
+    const auto from = static_cast<TaskId>(self.id + (give_way || fair_tail ? 1 : 0));
     if (cpu_ != Cpu::many && pending.kind == OperationKind::yield) self.ready_since = ready_ever_++;
     const auto options = candidates(from);
     const TaskId next =
@@ -324,11 +329,10 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
   if (in_fair_tail()) [[unlikely]]
     return static_cast<TaskId>(options[0]);
   ++decisions_;
-  return static_cast<TaskId>(options[strategy_->choose_task({.options = options,
-                                                             .running = running,
-                                                             .running_gives_way = running_gives_way,
-                                                             .pending = pending_,
-                                                             .under_way = under_way_})]);
+  choice_.options = options;
+  choice_.running = running;
+  choice_.running_gives_way = running_gives_way;
+  return static_cast<TaskId>(options[strategy_->choose_task(choice_)]);
 }
 
 SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
