@@ -8,6 +8,7 @@
 
 #include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -63,7 +64,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   Task& task = *tasks_[tasks_count_];
   set_name(task, process, name);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
-    if (tasks_[i]->name != task.name) continue;
+    if (!is_same_name(tasks_[i]->name, task.name)) continue;
     fail(OutcomeKind::unsupported,
          fmt::format("two tasks called {}: a schedule could not tell them apart", task.name));
     return *tasks_[i];  // during set-up; nothing will run
@@ -102,8 +103,9 @@ void Scheduler::set_name(Task& task, ProcessId process, std::string_view name) {
   const unsigned incarnation = world_.incarnation(process);
   const std::string_view pooled =
       task.name;  // the next execution mostly gives the same names in the same order
-  if (incarnation == 1 && pooled.size() == process_name.size() + 1 + name.size() && pooled.ends_with(name) &&
-      pooled.starts_with(process_name) && pooled[process_name.size()] == '/') {
+  const std::size_t slash = process_name.size();
+  if (incarnation == 1 && pooled.size() == slash + 1 + name.size() && pooled[slash] == '/' &&
+      is_same_name(pooled.substr(0, slash), process_name) && is_same_name(pooled.substr(slash + 1), name)) {
     return;
   }
   task.name.assign(process_name);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/world.hpp"
 
 // This file calls mmap(2) and its kind for the simulator itself: with current_task set they would be the
@@ -109,7 +110,7 @@ void Segments::leave(std::string_view path, std::span<const std::byte> content) 
 
 Segments::Segment& Segments::create(std::string_view name) {
   Segment& segment = segments_[segments_count_++];
-  segment.name.assign(name);
+  if (!is_same_name(segment.name, name)) segment.name.assign(name);
   segment.object = world_.objects().add(name);
   segment.bytes = 0;
   segment.linked = true;
@@ -360,7 +361,7 @@ std::uint64_t Segments::value_at(const Operation& operation) const noexcept {
 
 Segments::Segment* Segments::find(std::string_view name) noexcept {
   for (std::size_t i = 0; i < segments_count_; ++i) {
-    if (segments_[i].linked && segments_[i].name == name) return &segments_[i];
+    if (segments_[i].linked && is_same_name(segments_[i].name, name)) return &segments_[i];
   }
   return nullptr;
 }
