@@ -219,8 +219,11 @@ void Scheduler::point(Operation operation) noexcept {
         options.size() == 1 ? static_cast<TaskId>(options[0]) : choose_task(options, self.id, give_way);
     if (next != self.id) switch_to(*tasks_[next]);
   }
+  // Of an address, where there is no object, nothing goes in: it differs from run to run. As a mask and not as a branch, which
+  // could not be foreseen.
+  const std::uint32_t offset_counts = 0U - static_cast<std::uint32_t>(pending.object != 0);
   mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(pending.kind)} << 40U |
-      std::uint64_t{pending.bytes} << 32U | (pending.object == 0 ? 0 : pending.offset));
+      std::uint64_t{pending.bytes} << 32U | (pending.offset & offset_counts));
   mix(std::uint64_t{pending.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
   if (strategy_follows_steps_) strategy_->performs(self.id, pending);
   if (listener_ != nullptr) [[unlikely]]
