@@ -257,16 +257,19 @@ void Segments::process_died(ProcessId process) noexcept {
   }
 }
 
-void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind,
-                      std::uint32_t site) noexcept {
+Operation Segments::arrive(const volatile void* address, std::size_t bytes, OperationKind kind,
+                           std::uint32_t site) noexcept {
   const Place place = locate(address, bytes, kind);
-  const std::uint64_t points_before = world_.scheduler().points();
-  world_.scheduler().point({.kind = kind,
-                            .bytes = static_cast<std::uint8_t>(bytes),
-                            .object = place.object,
-                            .offset = place.offset,
-                            .site = site});
-  const bool others_ran = world_.scheduler().points() != points_before + 1;
+  return {.kind = kind,
+          .bytes = static_cast<std::uint8_t>(bytes),
+          .object = place.object,
+          .offset = place.offset,
+          .site = site};
+}
+
+void Segments::go_on(const volatile void* address, const Operation& operation, bool others_ran) noexcept {
+  const std::size_t bytes = operation.bytes;
+  const OperationKind kind = operation.kind;
   if (others_ran) static_cast<void>(locate(address, bytes, kind));
   if (world_.damages().are_possible()) [[unlikely]] {
     const std::size_t index = segment_of_window(window_of(address));
@@ -286,10 +289,10 @@ void Segments::access(const volatile void* address, std::size_t bytes, Operation
   if (kind == OperationKind::read || kind == OperationKind::write) {
     checks.accessed({.task = current_task->id,
                      .place = shared_place,
-                     .bytes = static_cast<std::uint8_t>(bytes),
+                     .bytes = operation.bytes,
                      .writes = writes,
                      .plain = true,
-                     .site = site},
+                     .site = operation.site},
                     !writes);
   }
 }
