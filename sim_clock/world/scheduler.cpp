@@ -256,6 +256,7 @@ Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
 
 std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
   std::size_t woken = 0;
+  if (unfinished_count_ == runnable_count_ + stalled_count_) return woken;  // nobody is blocked
   for (; woken < count_max; ++woken) {
     Task* longest = nullptr;
     for (std::size_t i = 0; i < tasks_count_; ++i) {

@@ -66,11 +66,12 @@ void Segments::reset() noexcept {
 
 int Segments::open(std::string_view path, int flags) noexcept {
   const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);  // "/x" and "x" are one object
-  if (name.empty() || name.find('/') != std::string_view::npos) {
+  Segment* segment = find(name);
+  // A name under which there is a segment has been looked at before.
+  if (segment == nullptr && (name.empty() || name.find('/') != std::string_view::npos)) {
     errno = EINVAL;
     return -1;
   }
-  Segment* segment = find(name);
   if (segment != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
     return -1;

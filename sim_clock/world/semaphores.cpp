@@ -32,13 +32,13 @@ std::optional<std::string_view> plain_name(std::string_view name) noexcept {
 }  // namespace
 
 sem_t* Semaphores::open(std::string_view path, int flags, unsigned value) noexcept {
-  const auto plain = plain_name(path);
-  if (!plain) {
+  // A name under which there is a semaphore has been looked at before.
+  const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);
+  Semaphore* const semaphore = find(name);
+  if (semaphore == nullptr && !plain_name(path)) {
     errno = EINVAL;
     return SEM_FAILED;
   }
-  const std::string_view name = *plain;
-  Semaphore* semaphore = find(name);
   if (semaphore != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
     return SEM_FAILED;
