@@ -42,6 +42,8 @@ class MemoryChecks {
   void accept_change(SharedPlace place, std::size_t bytes) noexcept {
     if (on_) watch_.accept(place, bytes);
   }
+  /// The world has filled the bytes with zeros just now. Also when the checks are off: they may be on in the next execution.
+  void was_zeroed(SharedPlace place, std::size_t bytes) noexcept { watch_.zero(place, bytes); }
   [[nodiscard]] std::optional<SharedPlace> find_unseen_change(SharedPlace place, std::size_t bytes) noexcept {
     return on_ ? watch_.find_change(place, bytes) : std::nullopt;
   }

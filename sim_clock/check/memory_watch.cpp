@@ -27,6 +27,11 @@ void MemoryWatch::accept(SharedPlace place, std::size_t bytes) noexcept {
               reinterpret_cast<const unsigned char*>(memory_) + place, bytes);
 }
 
+void MemoryWatch::zero(SharedPlace place, std::size_t bytes) noexcept {
+  settle();
+  std::memset(reinterpret_cast<unsigned char*>(expected_) + place, 0, bytes);
+}
+
 std::optional<SharedPlace> MemoryWatch::find_change(SharedPlace place, std::size_t bytes) noexcept {
   settle();
   const auto* const memory = reinterpret_cast<const unsigned char*>(memory_) + place;

@@ -44,6 +44,9 @@ class MemoryWatch {
   /// The bytes were changed on purpose just now, by the world itself.
   void accept(SharedPlace place, std::size_t bytes) noexcept;
 
+  /// The same where they have become zero.
+  void zero(SharedPlace place, std::size_t bytes) noexcept;
+
   /// @return the first byte of the range that is not as it should be
   [[nodiscard]] std::optional<SharedPlace> find_change(SharedPlace place, std::size_t bytes) noexcept;
 

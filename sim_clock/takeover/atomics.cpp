@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "sim_clock/check/code_site.hpp"
+#include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace {
@@ -22,7 +23,7 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind, 
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return false;
   if (Segments::contains(address)) {
-    self->world->segments().access(address, bytes, kind, ltsim::code_site(caller));
+    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
   } else {
     self->world->scheduler().point(
         {.kind = kind,

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "sim_clock/check/code_site.hpp"
+#include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace {
@@ -19,7 +20,7 @@ using ltsim::Segments;
 [[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes, OperationKind kind,
                                      const void* caller) noexcept {
   if (ltsim::current_task == nullptr) return;
-  ltsim::current_task->world->segments().access(address, bytes, kind, ltsim::code_site(caller));
+  ltsim::access_shared(*ltsim::current_task->world, address, bytes, kind, ltsim::code_site(caller));
 }
 
 /// @param caller  the return address of the announcement: it stands in the code under test

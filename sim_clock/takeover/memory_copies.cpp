@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "sim_clock/check/code_site.hpp"
+#include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace {
@@ -43,7 +44,8 @@ constinit NextFunction<void*(void*, int, std::size_t)> next_memset{"memset"};
 constexpr std::size_t piece_bytes = 8;
 
 void point(const volatile void* address, std::size_t bytes, OperationKind kind, std::uint32_t site) noexcept {
-  if (Segments::contains(address)) ltsim::current_task->world->segments().access(address, bytes, kind, site);
+  if (Segments::contains(address))
+    ltsim::access_shared(*ltsim::current_task->world, address, bytes, kind, site);
 }
 
 /// The bytes are moved by instructions, not by a call that would lead back here.

@@ -20,7 +20,10 @@ extern "C" sem_t* sem_open(const char* name, int flags, ...) noexcept {
     value = va_arg(arguments, unsigned);
     va_end(arguments);
   }
-  if (current_task != nullptr) return current_task->world->semaphores().open(name, flags, value);
+  if (current_task != nullptr) {
+    current_task->world->scheduler().point({.kind = ltsim::OperationKind::sem_open});
+    return current_task->world->semaphores().open(name, flags, value);
+  }
   if (ltsim::World::refuses_real("sem_open")) return SEM_FAILED;
   return LTSIM_NEXT(sem_open)(name, flags, mode, value);
 }

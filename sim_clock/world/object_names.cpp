@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/world/same_name.hpp"
+
 namespace ltsim {
 void make_one_word(std::string& name) {
   if (name.empty()) name.push_back('_');
@@ -22,7 +24,7 @@ ObjectId ObjectNames::add(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   if (names_count_ == names_.size()) names_.emplace_back();
   std::string& stored = names_[names_count_];
-  if (stored != name) {
+  if (!is_same_name(stored, name)) {
     stored.assign(name);
     make_one_word(stored);
   }

@@ -8,6 +8,7 @@
 
 #include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -63,7 +64,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   Task& task = *tasks_[tasks_count_];
   set_name(task, process, name);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
-    if (tasks_[i]->name != task.name) continue;
+    if (!is_same_name(tasks_[i]->name, task.name)) continue;
     fail(OutcomeKind::unsupported,
          fmt::format("two tasks called {}: a schedule could not tell them apart", task.name));
     return *tasks_[i];  // during set-up; nothing will run
@@ -102,8 +103,9 @@ void Scheduler::set_name(Task& task, ProcessId process, std::string_view name) {
   const unsigned incarnation = world_.incarnation(process);
   const std::string_view pooled =
       task.name;  // the next execution mostly gives the same names in the same order
-  if (incarnation == 1 && pooled.size() == process_name.size() + 1 + name.size() && pooled.ends_with(name) &&
-      pooled.starts_with(process_name) && pooled[process_name.size()] == '/') {
+  const std::size_t slash = process_name.size();
+  if (incarnation == 1 && pooled.size() == slash + 1 + name.size() && pooled[slash] == '/' &&
+      is_same_name(pooled.substr(0, slash), process_name) && is_same_name(pooled.substr(slash + 1), name)) {
     return;
   }
   task.name.assign(process_name);
@@ -188,32 +190,40 @@ void Scheduler::point(Operation operation) noexcept {
   pending = operation;
   clock_.pass(point_cost);
   ++points_;
-  if (in_fair_tail()) [[unlikely]]
+  bool fair_tail = in_fair_tail();
+  if (fair_tail) [[unlikely]]
     pass_fair_tail(self, pending);
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, pending);
-  if (clock_.next_deadline() <= clock_.now()) wake_due();
+  if (clock_.any_armed() && clock_.next_deadline() <= clock_.now()) wake_due();
   if (world_.faults().any_at_each_point()) [[unlikely]] {
     if (world_.faults().crash_is_possible()) world_.faults().choose_crash();
     if (self.state == Task::State::killed) leave_killed();
     if (world_.faults().can_strike(FaultKind::process_stall)) world_.faults().choose_stall();
     wait_for_processor();
+    fair_tail = in_fair_tail();
   }
   const bool give_way = gives_way(self, operation);
-  if (in_fair_tail() && give_way) [[unlikely]]
+  if (fair_tail && give_way) [[unlikely]]
     skip_time_if_all_give_way();
-  if (clock_.any_armed() || clock_was_read_) choose_slow_moment();
+  if (clock_.any_armed() || clock_was_read_) {
+    choose_slow_moment();
+    fair_tail = in_fair_tail();
+  }
   if (runnable_count_ > 1) {
     // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
-    const auto from = static_cast<TaskId>(self.id + (give_way || in_fair_tail() ? 1 : 0));
+    const auto from = static_cast<TaskId>(self.id + (give_way || fair_tail ? 1 : 0));
     if (cpu_ != Cpu::many && pending.kind == OperationKind::yield) self.ready_since = ready_ever_++;
     const auto options = candidates(from);
     const TaskId next =
         options.size() == 1 ? static_cast<TaskId>(options[0]) : choose_task(options, self.id, give_way);
     if (next != self.id) switch_to(*tasks_[next]);
   }
+  // Of an address, where there is no object, nothing goes in: it differs from run to run. As a mask and not as a branch, which
+  // could not be foreseen.
+  const std::uint32_t offset_counts = 0U - static_cast<std::uint32_t>(pending.object != 0);
   mix(std::uint64_t{self.id} << 48U | std::uint64_t{static_cast<std::uint8_t>(pending.kind)} << 40U |
-      std::uint64_t{pending.bytes} << 32U | (pending.object == 0 ? 0 : pending.offset));
+      std::uint64_t{pending.bytes} << 32U | (pending.offset & offset_counts));
   mix(std::uint64_t{pending.object} << 56U ^ static_cast<std::uint64_t>(clock_.now().count()));
   if (strategy_follows_steps_) strategy_->performs(self.id, pending);
   if (listener_ != nullptr) [[unlikely]]
@@ -246,6 +256,7 @@ Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
 
 std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
   std::size_t woken = 0;
+  if (unfinished_count_ == runnable_count_ + stalled_count_) return woken;  // nobody is blocked
   for (; woken < count_max; ++woken) {
     Task* longest = nullptr;
     for (std::size_t i = 0; i < tasks_count_; ++i) {
@@ -324,11 +335,10 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
   if (in_fair_tail()) [[unlikely]]
     return static_cast<TaskId>(options[0]);
   ++decisions_;
-  return static_cast<TaskId>(options[strategy_->choose_task({.options = options,
-                                                             .running = running,
-                                                             .running_gives_way = running_gives_way,
-                                                             .pending = pending_,
-                                                             .under_way = under_way_})]);
+  choice_.options = options;
+  choice_.running = running;
+  choice_.running_gives_way = running_gives_way;
+  return static_cast<TaskId>(options[strategy_->choose_task(choice_)]);
 }
 
 SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {

@@ -170,14 +170,17 @@ class Scheduler {
   }
   /// Runnable tasks in the order of their numbers, from `from` on and then around.
   std::span<const std::uint64_t> runnable_tasks(TaskId from) noexcept {
-    if (runnable_count_ != 2 || tasks_count_ > 64) return many_runnable_tasks(from);
-    // The most common case, without loops that end differently each time.
+    if (runnable_count_ > 2 || tasks_count_ > 64) return many_runnable_tasks(from);
+    // The most common cases, without loops that end differently each time.
     const std::uint64_t low = static_cast<std::uint64_t>(std::countr_zero(runnable_[0]));
     const std::uint64_t high = 63 - static_cast<std::uint64_t>(std::countl_zero(runnable_[0]));
-    const bool low_is_first = low >= from || high < from;
-    options_[0] = low_is_first ? low : high;
-    options_[1] = low_is_first ? high : low;
-    return std::span{options_}.first(2);
+    // Without branches, too: where tasks are chosen at random, who runs is what no processor foresees, and to be wrong costs as
+    // much as half of a scheduling point.
+    const bool high_is_first = static_cast<unsigned>(low < from) & static_cast<unsigned>(high >= from);
+    const std::uint64_t exchange = (low ^ high) & (0 - std::uint64_t{high_is_first});
+    options_[0] = low ^ exchange;
+    options_[1] = high ^ exchange;
+    return std::span{options_}.first(runnable_count_);
   }
   std::span<const std::uint64_t> many_runnable_tasks(TaskId from) noexcept;
   /// Of two that wait for the same: the longer waiting one; on one processor the one with the higher priority.
@@ -211,7 +214,10 @@ class Scheduler {
   std::size_t stalled_count_ = 0;
   std::array<std::uint64_t, tasks_max> options_{};
   std::array<Operation, tasks_max> pending_{};  // by task number
-  std::vector<std::unique_ptr<Task>> tasks_;    // pooled; the first tasks_count_ belong to this execution
+  /// What a strategy is asked; kept, because most of it is the same each time.
+  TaskChoice choice_{
+      .options = {}, .running = 0, .running_gives_way = false, .pending = pending_, .under_way = under_way_};
+  std::vector<std::unique_ptr<Task>> tasks_;  // pooled; the first tasks_count_ belong to this execution
   std::size_t tasks_count_ = 0;
   std::size_t unfinished_count_ = 0;
   std::array<std::uint16_t, processes_max> unfinished_in_{};  // by process

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/world.hpp"
 
 // This file calls mmap(2) and its kind for the simulator itself: with current_task set they would be the
@@ -65,11 +66,12 @@ void Segments::reset() noexcept {
 
 int Segments::open(std::string_view path, int flags) noexcept {
   const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);  // "/x" and "x" are one object
-  if (name.empty() || name.find('/') != std::string_view::npos) {
+  Segment* segment = find(name);
+  // A name under which there is a segment has been looked at before.
+  if (segment == nullptr && (name.empty() || name.find('/') != std::string_view::npos)) {
     errno = EINVAL;
     return -1;
   }
-  Segment* segment = find(name);
   if (segment != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
     return -1;
@@ -101,16 +103,15 @@ void Segments::leave(std::string_view path, std::span<const std::byte> content) 
     return;
   }
   Segment& segment = create(name);
+  grow(segment, content.size());
   std::byte* const bytes = all_ + (index_of(segment) << window_shift);
   std::memcpy(bytes, content.data(), content.size());
-  std::memset(bytes + content.size(), 0, page_end(content.size()) - content.size());
-  segment.bytes = content.size();
-  world_.checks().accept_change(static_cast<SharedPlace>(bytes - all_), page_end(content.size()));
+  world_.checks().accept_change(static_cast<SharedPlace>(bytes - all_), content.size());
 }
 
 Segments::Segment& Segments::create(std::string_view name) {
   Segment& segment = segments_[segments_count_++];
-  segment.name.assign(name);
+  if (!is_same_name(segment.name, name)) segment.name.assign(name);
   segment.object = world_.objects().add(name);
   segment.bytes = 0;
   segment.linked = true;
@@ -142,13 +143,22 @@ int Segments::resize(int descriptor, off_t bytes) noexcept {
     world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
   }
   if (wanted > segment->bytes) {
-    // The rest of the last page, too: it can be touched, and must not show what another execution left.
-    const std::size_t begin = (index_of(*segment) << window_shift) + segment->bytes;
-    std::memset(all_ + begin, 0, page_end(wanted) - segment->bytes);
-    world_.checks().accept_change(static_cast<SharedPlace>(begin), page_end(wanted) - segment->bytes);
+    grow(*segment, wanted);
+  } else {
+    segment->bytes = wanted;
   }
-  segment->bytes = wanted;
   return 0;
+}
+
+void Segments::grow(Segment& segment, std::size_t bytes) noexcept {
+  // The rest of the last page, too, as far as it was used: it can be touched, and must not show what another execution left. To
+  // fill it whole takes as long as two scheduling points.
+  const std::size_t end = std::max(bytes, std::min(page_end(bytes), segment.used_bytes));
+  const std::size_t begin = (index_of(segment) << window_shift) + segment.bytes;
+  std::memset(all_ + begin, 0, end - segment.bytes);
+  world_.checks().was_zeroed(static_cast<SharedPlace>(begin), end - segment.bytes);
+  if (segment.used_bytes <= end) segment.used_bytes = bytes;
+  segment.bytes = bytes;
 }
 
 int Segments::status(int descriptor, struct stat& into) noexcept {
@@ -157,12 +167,20 @@ int Segments::status(int descriptor, struct stat& into) noexcept {
     errno = EBADF;
     return -1;
   }
-  std::memset(&into, 0, sizeof into);
-  into.st_mode = S_IFREG | 0600;
+  // One by one: what compilers make of a fill of this size ("rep stos") takes longer to begin than all of this.
+  into.st_dev = 0;
   into.st_ino = index_of(*segment) + 1;
   into.st_nlink = segment->linked ? 1 : 0;
+  into.st_mode = S_IFREG | 0600;
+  into.st_uid = 0;
+  into.st_gid = 0;
+  into.st_rdev = 0;
   into.st_size = static_cast<off_t>(segment->bytes);
   into.st_blksize = 4096;
+  into.st_blocks = 0;
+  into.st_atim = {};
+  into.st_mtim = {};
+  into.st_ctim = {};
   return 0;
 }
 
@@ -240,17 +258,20 @@ void Segments::process_died(ProcessId process) noexcept {
   }
 }
 
-void Segments::access(const volatile void* address, std::size_t bytes, OperationKind kind,
-                      std::uint32_t site) noexcept {
-  const Place place = locate(address, kind);
-  const std::uint64_t points_before = world_.scheduler().points();
-  world_.scheduler().point({.kind = kind,
-                            .bytes = static_cast<std::uint8_t>(bytes),
-                            .object = place.object,
-                            .offset = place.offset,
-                            .site = site});
-  const bool others_ran = world_.scheduler().points() != points_before + 1;
-  if (others_ran) static_cast<void>(locate(address, kind));
+Operation Segments::arrive(const volatile void* address, std::size_t bytes, OperationKind kind,
+                           std::uint32_t site) noexcept {
+  const Place place = locate(address, bytes, kind);
+  return {.kind = kind,
+          .bytes = static_cast<std::uint8_t>(bytes),
+          .object = place.object,
+          .offset = place.offset,
+          .site = site};
+}
+
+void Segments::go_on(const volatile void* address, const Operation& operation, bool others_ran) noexcept {
+  const std::size_t bytes = operation.bytes;
+  const OperationKind kind = operation.kind;
+  if (others_ran) static_cast<void>(locate(address, bytes, kind));
   if (world_.damages().are_possible()) [[unlikely]] {
     const std::size_t index = segment_of_window(window_of(address));
     world_.damages().choose(segments_[index].name, {all_ + (index << window_shift), segments_[index].bytes});
@@ -269,10 +290,10 @@ void Segments::access(const volatile void* address, std::size_t bytes, Operation
   if (kind == OperationKind::read || kind == OperationKind::write) {
     checks.accessed({.task = current_task->id,
                      .place = shared_place,
-                     .bytes = static_cast<std::uint8_t>(bytes),
+                     .bytes = operation.bytes,
                      .writes = writes,
                      .plain = true,
-                     .site = site},
+                     .site = operation.site},
                     !writes);
   }
 }
@@ -282,7 +303,10 @@ void Segments::announce_write(const volatile void* address, std::size_t bytes) n
 }
 
 void Segments::accept_change(const volatile void* address, std::size_t bytes) noexcept {
-  if (contains(address)) world_.checks().accept_change(place_of(address), bytes);
+  if (!contains(address)) return;
+  Segment& segment = segments_[segment_of_window(window_of(address))];
+  segment.used_bytes = std::max(segment.used_bytes, offset_of(address) + bytes);
+  world_.checks().accept_change(place_of(address), bytes);
 }
 
 void Segments::accept_change(ObjectId segment, std::uint32_t offset, std::size_t bytes) noexcept {
@@ -308,9 +332,10 @@ void Segments::changed_unseen(SharedPlace place, std::string_view noticed) {
       offset_in_segment(place), world_.objects().object_name(segment_at(place)), noticed));
 }
 
-Segments::Place Segments::locate(const volatile void* address, OperationKind kind) noexcept {
+Segments::Place Segments::locate(const volatile void* address, std::size_t bytes,
+                                 OperationKind kind) noexcept {
   const std::size_t number = window_of(address);
-  const Segment& segment = segments_[segment_of_window(number)];
+  Segment& segment = segments_[segment_of_window(number)];
   const std::uint32_t offset = offset_of(address);
   const Window& window = windows_[number];
   // Linux maps whole pages: bytes between the end of the object and the end of its last page can be touched.
@@ -323,6 +348,8 @@ Segments::Place Segments::locate(const volatile void* address, OperationKind kin
         fmt::format("access to byte {} of segment {}, which is not mapped there (SIGSEGV or SIGBUS)", offset,
                     world_.objects().object_name(segment.object)));
   }
+  if (offset + bytes > segment.bytes) [[unlikely]]
+    segment.used_bytes = std::max(segment.used_bytes, offset + bytes);
   return {.object = segment.object, .offset = offset};
 }
 
@@ -338,7 +365,7 @@ std::uint64_t Segments::value_at(const Operation& operation) const noexcept {
 
 Segments::Segment* Segments::find(std::string_view name) noexcept {
   for (std::size_t i = 0; i < segments_count_; ++i) {
-    if (segments_[i].linked && segments_[i].name == name) return &segments_[i];
+    if (segments_[i].linked && is_same_name(segments_[i].name, name)) return &segments_[i];
   }
   return nullptr;
 }

@@ -65,17 +65,21 @@ class Segments {
   void* map(std::size_t bytes, int protection, int flags, int descriptor, off_t offset) noexcept;
   int unmap(void* address, std::size_t bytes) noexcept;
 
-  /// The running task is about to access memory in the range: scheduling point. Ends the execution as a crash
-  /// if the task's process has not mapped the address (any more), or not for writing, or if it lies behind
-  /// the end of its segment; before the point, and again after it, for the mapping may have gone meanwhile.
-  /// Plain accesses are checked for races; atomic ones are to be, when they were made (MemoryChecks::atomic()).
+  /// The running task is about to access memory in the range. Ends the execution as a crash if the task's process has not
+  /// mapped the address (any more), or not for writing, or if it lies behind the end of its segment.
   /// @param site  as in Operation
-  void access(const volatile void* address, std::size_t bytes, OperationKind kind,
-              std::uint32_t site) noexcept;
-  /// A write that access() was told in pieces is about to be made as a whole, in one step.
+  /// @return      what the scheduling point is for that comes next
+  [[nodiscard]] Operation arrive(const volatile void* address, std::size_t bytes, OperationKind kind,
+                                 std::uint32_t site) noexcept;
+  /// After that point the task makes the access, unless the mapping has gone meanwhile. Plain accesses are checked for races;
+  /// atomic ones are to be, when they were made (MemoryChecks::atomic()).
+  /// @param operation   from arrive()
+  /// @param others_ran  while the task stood at the point
+  void go_on(const volatile void* address, const Operation& operation, bool others_ran) noexcept;
+  /// A write that go_on() was told in pieces is about to be made as a whole, in one step.
   void announce_write(const volatile void* address, std::size_t bytes) noexcept;
   /// The simulator itself has just changed these bytes: a state of its own that lies there, a fault. Outside
-  /// the range it does nothing. Whatever else changes without access() is noticed and ends the exploration.
+  /// the range it does nothing. Whatever else changes without go_on() is noticed and ends the exploration.
   void accept_change(const volatile void* address, std::size_t bytes) noexcept;
   void accept_change(ObjectId segment, std::uint32_t offset, std::size_t bytes) noexcept;
   /// Ends the execution as unsupported if memory is not as the accesses of its tasks have left it.
@@ -115,6 +119,9 @@ class Segments {
     ObjectId object = 0;
     std::size_t bytes = 0;
     bool linked = false;
+    /// All its bytes from here on are zero, in the memory and in the copy that the checks keep; kept between
+    /// executions. Bytes of the segment itself count as used, those behind it once they were accessed.
+    std::size_t used_bytes = 0;
   };
   struct Window {
     bool has_memory = false;  // the address range is backed by the segment's bytes; kept between executions
@@ -143,11 +150,13 @@ class Segments {
     std::uint32_t offset;
   };
   /// Ends the execution as a crash if the running task cannot access the address so.
-  [[nodiscard]] Place locate(const volatile void* address, OperationKind kind) noexcept;
+  [[nodiscard]] Place locate(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
   void changed_unseen(SharedPlace place, std::string_view noticed);
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
   /// There must be room for it.
   Segment& create(std::string_view name);
+  /// @param bytes  more than it has
+  void grow(Segment& segment, std::size_t bytes) noexcept;
   /// @return null for a descriptor that is closed or never was
   [[nodiscard]] Descriptor* find_descriptor(int descriptor) noexcept;
   [[nodiscard]] Segment* of_descriptor(int descriptor) noexcept;

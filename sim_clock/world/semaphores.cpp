@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -31,14 +32,13 @@ std::optional<std::string_view> plain_name(std::string_view name) noexcept {
 }  // namespace
 
 sem_t* Semaphores::open(std::string_view path, int flags, unsigned value) noexcept {
-  world_.scheduler().point(operation_on(OperationKind::sem_open));
-  const auto plain = plain_name(path);
-  if (!plain) {
+  // A name under which there is a semaphore has been looked at before.
+  const std::string_view name = path.substr(path.starts_with('/') ? 1 : 0);
+  Semaphore* const semaphore = find(name);
+  if (semaphore == nullptr && !plain_name(path)) {
     errno = EINVAL;
     return SEM_FAILED;
   }
-  const std::string_view name = *plain;
-  Semaphore* semaphore = find(name);
   if (semaphore != nullptr && (flags & O_CREAT) != 0 && (flags & O_EXCL) != 0) {
     errno = EEXIST;
     return SEM_FAILED;
@@ -175,7 +175,7 @@ sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, un
   if (count_ == semaphores_max)
     world_.unsupported(fmt::format("more than {} semaphores in one execution", semaphores_max));
   Semaphore& semaphore = semaphores_[count_];
-  semaphore.name.assign(name);
+  if (!is_same_name(semaphore.name, name)) semaphore.name.assign(name);
   semaphore.object = world_.objects().add(shown_name);
   semaphore.value = value;
   semaphore.linked = !name.empty();
@@ -207,7 +207,7 @@ void Semaphores::exceeds_bound(const Semaphore& semaphore, std::uint64_t value) 
 
 Semaphores::Semaphore* Semaphores::find(std::string_view name) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
-    if (semaphores_[i].linked && semaphores_[i].name == name) return &semaphores_[i];
+    if (semaphores_[i].linked && is_same_name(semaphores_[i].name, name)) return &semaphores_[i];
   }
   return nullptr;
 }

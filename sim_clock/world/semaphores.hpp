@@ -47,6 +47,8 @@ class Semaphores {
   void leave(std::string_view path, unsigned value);
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
+  /// After its scheduling point, which is the caller's: another task may come back from there, and each function it has to
+  /// leave is one that the processor does not foresee.
   sem_t* open(std::string_view path, int flags, unsigned value) noexcept;
   int close(sem_t* handle) noexcept;
   int unlink(std::string_view path) noexcept;

@@ -10,6 +10,7 @@
 
 #include "sim_clock/check/race_text.hpp"
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/same_name.hpp"
 
 namespace ltsim {
 
@@ -118,7 +119,7 @@ bool World::refuses_real(std::string_view call) {
 
 Process& World::process(std::string_view name) {
   for (std::size_t i = 0; i < processes_count_; ++i) {
-    if (processes_[i]->name() == name) return *processes_[i];
+    if (is_same_name(processes_[i]->name(), name)) return *processes_[i];
   }
   if (processes_count_ == Segments::processes_max) {
     unsupported(fmt::format("more than {} processes in one world", Segments::processes_max));
@@ -128,7 +129,7 @@ Process& World::process(std::string_view name) {
   if (id == processes_.size()) processes_.emplace_back();
   // The next execution of a scenario makes the same processes in the same order: their objects are used
   // again.
-  if (processes_[id] == nullptr || processes_[id]->name() != name) {
+  if (processes_[id] == nullptr || !is_same_name(processes_[id]->name(), name)) {
     processes_[id] = std::make_unique<Process>(*this, static_cast<ProcessId>(id), name);
   }
   processes_[id]->reset();

@@ -3,6 +3,16 @@
 // Absolute figures differ from machine to machine and from hour to hour; "switches" relates each to the bare
 // switch between two contexts, measured in the same run: a scheduling point costs so many of them. What the
 // checks of memory cost (races, changes unseen, coverage) shows beside "unchecked".
+//
+// Where an execution of "handoff_unchecked" goes, in instructions that callgrind counts (12,100, gcc 12 -O3):
+//   33 %  its 25 scheduling points: 162 each, the choice and the switch to the other task included
+//   26 %  semaphores and segments, opened by name, mapped, closed: what replaces libc's calls and Linux's
+//   15 %  the code under test with Boost.Interprocess (8 %), and the announcements of its plain accesses (7 %)
+//   11 %  two processes and their tasks: made, named, begun, ended
+//    6 %  eight accesses to the segment, besides their scheduling points
+//    9 %  begin and end of the execution, blocking and waking, all else
+// Its profile is flat. Time goes to what is not foreseen, too: whom the random walk chooses is one bit a point, and after a
+// switch each return to a function that the other task is not in.
 
 #include <chrono>
 

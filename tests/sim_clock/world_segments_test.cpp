@@ -217,5 +217,26 @@ TEST_F(SegmentsTest, the_rest_of_the_last_page_is_fresh_in_each_execution_too) {
   EXPECT_EQ(outcome, Outcome{});
 }
 
+TEST_F(SegmentsTest,
+       the_rest_of_the_last_page_is_fresh_after_a_longer_segment_and_after_executions_without_checks) {
+  std::size_t written_before = 0;
+  for (unsigned execution = 0; execution < 16; ++execution) {
+    world().set_checks((execution / 2) % 2 == 0);  // on, on, off, off ...
+    const bool is_long = execution % 2 == 1;       // ... and each way between a short one and a long one
+    const std::size_t written = segment_bytes + (execution * 1009) % 3000;
+    const Outcome outcome = run([=](World& world) {
+      world.process("a").start("main", [=, &world] {
+        unsigned char* const bytes = open_and_map();
+        if (is_long && ftruncate(shm_open("/segment", O_RDWR, 0600), 4096) != 0) return;
+        world.require(bytes[written_before] == 0, "fresh");
+        bytes[written] = 7;
+      });
+    });
+    written_before = written;
+    EXPECT_EQ(outcome, Outcome{}) << execution;
+  }
+  world().set_checks(true);
+}
+
 }  // namespace
 }  // namespace ltsim
