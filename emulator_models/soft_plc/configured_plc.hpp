@@ -49,7 +49,11 @@ class ConfiguredPlc {
   ~ConfiguredPlc();
 
   /// @return nothing; or why the old configuration goes on
-  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text);
+  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text) {
+    return reload(text, file_name_);
+  }
+  /// @param name  of a text that is not the file; stands in front of errors in its place, ":line:column: " after it
+  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text, const std::string& name);
   /// The PLC of now; one that was replaced refuses what is asked of its gateway. None before the first reload.
   [[nodiscard]] std::shared_ptr<SoftPlc> plc() const;
   [[nodiscard]] PlcConfiguration configuration() const;
@@ -61,9 +65,7 @@ class ConfiguredPlc {
   [[nodiscard]] std::string realtime_refusal() const;
 
  private:
-  [[nodiscard]] std::string needs_stop(const std::string& change) const;
-  [[nodiscard]] std::string refusal_of_archive(const ArchiveSettings& archive, const std::string& why) const;
-  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next,
+  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next, const std::string& name,
                                                       const std::string& change);
 
   const std::string file_name_;

@@ -8,9 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include <unistd.h>
-
 #include "tests/emulator_models/archive/archive_rig.hpp"
+#include "tests/emulator_models/configured_emulator_rig.hpp"
 #include "tests/emulator_models/emulator_process.hpp"
 #include "tests/protocol/fx/worked_examples.hpp"
 
@@ -28,27 +27,6 @@ void wait_until_not_zero(const SerialLine& line, const char* read) {
     ASSERT_EQ(answer.size(), 8U);
   } while (answer == bytes("02 30 30 30 30 03 43 33"));
 }
-
-/// A folder with a configuration of two cycles; the second runs `program`.
-struct ConfiguredEmulator : testing::Test {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("ltsim-configured-" + std::to_string(::getpid()));
-  const std::string path = (folder / "plc.toml").string();
-
-  ConfiguredEmulator() {
-    std::filesystem::create_directory(folder);
-    write("good.il", "PROGRAM good\nVAR n AT %MW0 : INT; END_VAR\nLD n\nADD 1\nST n\nEND_PROGRAM\n");
-  }
-  ~ConfiguredEmulator() override { std::filesystem::remove_all(folder); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream{folder / name} << text; }
-  void configure(const std::string& program, const std::string& threads = "one", int period_ms = 10) const {
-    write("plc.toml", "[plc]\nthreads = \"" + threads +
-                          "\"\n[[cycle]]\nname = \"fast\"\nprogram = \"good.il\"\nperiod_ms = 1\n"
-                          "[[cycle]]\nname = \"slow\"\nprogram = \"" +
-                          program + "\"\nperiod_ms = " + std::to_string(period_ms) + "\n");
-  }
-};
 
 TEST_F(ConfiguredEmulator, runs_for_the_time_asked_for_and_prints_the_starts_of_each_cycle) {
   configure("good.il");

@@ -100,7 +100,8 @@ std::optional<std::string> read_source(const std::string& /*path*/) {
 struct Port : testing::Test {
   SteadyPlcClock clock;
   ConfiguredPlc plc{"plc.toml", read_source, make_driver, clock};
-  ConfiguredPort port{plc};
+  ConfigurationService configuration_service{[this](std::string_view text) { return plc.reload(text, {}); }};
+  ConfiguredPort port{plc, configuration_service};
 
   Port() {
     const auto loaded = plc.reload(configuration);
