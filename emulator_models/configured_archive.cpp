@@ -49,6 +49,9 @@ class ConfiguredArchive final : public soft_plc::PlcObserver {
                     nanoseconds now) noexcept override {
     recorder_.step_ordered(cycle, task, image, now);
   }
+  void program_failed(std::size_t cycle, soft_plc::SourcePlace place) noexcept override {
+    recorder_.program_failed(cycle, place);
+  }
   void gateway_writes(std::size_t cycle, const soft_plc::GatewayItem& item) noexcept override {
     recorder_.gateway_writes(cycle, item);
   }
@@ -66,13 +69,16 @@ tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> open_configure
     const std::function<void(const std::string&)>& tell) {
   const soft_plc::ArchiveSettings& settings = configuration.archive;
   if (settings.path.empty()) return nullptr;
+  std::vector<std::string> programs;
+  for (const soft_plc::ConfiguredCycle& cycle : configuration.cycles) programs.push_back(cycle.program_path);
   const nanoseconds since_power_up = steady_now() - power_up;
   auto archive = std::make_unique<ConfiguredArchive>(configuration, power_up, tell);
   const auto opened = archive->open(
       {.file = settings.path,
        .rows_max = settings.rows_max,
        .power_up_wall_clock = std::chrono::system_clock::now().time_since_epoch() - since_power_up,
-       .signal_names = settings.signals});
+       .signal_names = settings.signals,
+       .program_files = std::move(programs)});
   if (!opened) return tl::unexpected{opened.error()};
   return archive;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
+#include "emulator_models/soft_plc/il_error.hpp"
 #include "emulator_models/soft_plc/scan_task.hpp"
 
 namespace emulator_models::soft_plc {
@@ -21,6 +22,8 @@ class PlcObserver {
   /// @param image  whole between two scans
   virtual void step_ordered(std::size_t cycle, const ScanTask& task, const CycleImage& image,
                             std::chrono::nanoseconds now) noexcept = 0;
+  /// In phase 4 of a scan of the cycle, before the step with which its task enters the fault program_failed.
+  virtual void program_failed(std::size_t cycle, SourcePlace place) noexcept = 0;
   /// In phase 1 of a scan of the cycle: what a field device writes.
   virtual void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept = 0;
 

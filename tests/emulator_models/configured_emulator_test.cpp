@@ -147,6 +147,22 @@ TEST_F(ConfiguredEmulator, the_archive_of_the_configuration_has_what_both_cycles
   }
 }
 
+TEST_F(ConfiguredEmulator, the_archive_names_program_file_line_and_column_of_a_fault) {
+  write("divides.il", "PROGRAM divides\nVAR n : INT; END_VAR\nLD 1\n  DIV n\nEND_PROGRAM\n");
+  configure("divides.il");
+  std::ofstream{path, std::ios::app} << "[archive]\npath = \"plc.archive\"\n";
+  EmulatorProcess emulator{{"--config", path}};
+  EXPECT_TRUE(emulator.wait_for_text("fault in cycle slow: program failed (3)")) << emulator.printed();
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  archive::OtherConnection query{folder / "plc.archive"};
+  const std::string place = (folder / "divides.il").string() + ":4:3";
+  EXPECT_EQ(query("SELECT cycle, place FROM faults WHERE fault = 'program failed'"), "1 " + place + " ");
+  EXPECT_EQ(query("SELECT count(*) FROM faults WHERE cycle = 0 AND place IS NOT NULL"), "0 ");
+  EXPECT_EQ(query("SELECT what FROM history WHERE event = 'fault' AND cycle = 1"),
+            "program failed in execute at " + place + " ");
+}
+
 TEST_F(ConfiguredEmulator, an_archive_that_cannot_be_had_refuses_the_configuration_at_its_line) {
   configure("good.il");
   std::ofstream{path, std::ios::app} << "[archive]\npath = \"missing/plc.archive\"\n";

@@ -320,6 +320,7 @@ class CountingObserver final : public PlcObserver {
                     std::chrono::nanoseconds) noexcept override {
     ++steps_;
   }
+  void program_failed(std::size_t, SourcePlace) noexcept override {}
   void gateway_writes(std::size_t, const GatewayItem&) noexcept override {}
 
  private:
