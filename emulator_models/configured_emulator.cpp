@@ -16,7 +16,7 @@
 #include <sys/prctl.h>
 #include <CLI/CLI.hpp>
 
-#include "emulator_models/configured_archive.hpp"
+#include "emulator_models/configured_observer.hpp"
 #include "emulator_models/configured_port.hpp"
 #include "emulator_models/cycle_report.hpp"
 #include "emulator_models/emulator_handler.hpp"
@@ -136,7 +136,7 @@ class Watcher {
 class ConfiguredEmulator {
  public:
   explicit ConfiguredEmulator(const ConfiguredEmulatorOptions& options)
-      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_, open_archive} {}
+      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_, make_observer} {}
 
   int run(const EmulatorOptions& port) {
     if (const std::string refusal = load(); !refusal.empty()) {
@@ -157,9 +157,9 @@ class ConfiguredEmulator {
   }
 
  private:
-  static tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> open_archive(
+  static tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> make_observer(
       const soft_plc::PlcConfiguration& configuration, std::chrono::nanoseconds power_up) {
-    return open_configured_archive(configuration, power_up, complain);
+    return make_configured_observer(configuration, power_up, complain);
   }
 
   /// @return why the file is refused; empty if it is in use
@@ -229,7 +229,16 @@ class ConfiguredEmulator {
     }
   }
 
-  void report() { say(cycle_report(plc_.configuration(), *plc_.plc(), clock_.now())); }
+  void report() {
+    const auto configuration = plc_.configuration();
+    std::string text = cycle_report(configuration, *plc_.plc(), clock_.now());
+    if (!configuration.realtime_signals.empty()) {
+      for (std::size_t i = 0; i < configuration.cycles.size(); ++i)
+        text += values_report(configuration.cycles[i].name, configuration.realtime_signals,
+                              plc_.realtime_values(i));
+    }
+    say(text);
+  }
 
   const ConfiguredEmulatorOptions& options_;
   soft_plc::SteadyPlcClock clock_;

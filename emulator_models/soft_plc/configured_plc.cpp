@@ -52,6 +52,7 @@ std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfigu
   }
   if (!std::ranges::equal(old.drivers, next.drivers, is_same_driver)) return "the drivers";
   if (!is_same(old.archive, next.archive)) return "the archive";
+  if (old.realtime_signals != next.realtime_signals) return "the real-time data";
   return {};
 }
 
@@ -119,6 +120,7 @@ tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& nex
   if (plc_) plc_->gateway().close();
   threads_.reset();
   programs_ = std::move(programs);
+  observer_ = watched->observer.get();
   SoftPlc* const built = watched->plc.get();
   plc_ = std::shared_ptr<SoftPlc>{std::move(watched), built};
   threads_ = std::make_unique<PlcThreads>(*plc_, clock_, next.threading, next.realtime);
@@ -143,6 +145,17 @@ std::chrono::milliseconds ConfiguredPlc::answer_timeout() const {
 std::optional<RunTimeFault> ConfiguredPlc::run_time_fault(std::size_t index) const {
   const std::lock_guard lock{mutex_};
   return index < programs_.size() ? programs_[index]->run_time_fault() : std::nullopt;
+}
+
+RealTimeReading ConfiguredPlc::realtime_values(std::size_t index) const {
+  const std::lock_guard lock{mutex_};
+  RealTimeReading reading;
+  if (observer_ == nullptr || index >= programs_.size()) return reading;
+  const RealTimeValues* const values = observer_->values_of(index);
+  if (values == nullptr) return reading;
+  reading.values.resize(values->words_count());
+  reading.outcome = values->read(reading.values, reading.stamp);
+  return reading;
 }
 
 std::string ConfiguredPlc::realtime_refusal() const {

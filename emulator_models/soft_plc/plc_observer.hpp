@@ -1,5 +1,5 @@
 // Who watches a SoftPlc: called on the thread of the cycle, in the middle of its scan. So it must neither wait nor throw
-// nor call back.
+// nor call back; values_of() is for any thread.
 #pragma once
 
 #include <chrono>
@@ -12,6 +12,7 @@
 namespace emulator_models::soft_plc {
 
 struct GatewayItem;
+class RealTimeValues;
 
 class PlcObserver {
  public:
@@ -26,6 +27,10 @@ class PlcObserver {
   virtual void program_failed(std::size_t cycle, SourcePlace place) noexcept = 0;
   /// In phase 1 of a scan of the cycle: what a field device writes.
   virtual void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept = 0;
+  /// @return what any thread may read of the cycle's latest scan; nullptr: nothing is kept
+  [[nodiscard]] virtual const RealTimeValues* values_of(std::size_t /*cycle*/) const noexcept {
+    return nullptr;
+  }
 
  protected:
   PlcObserver() = default;

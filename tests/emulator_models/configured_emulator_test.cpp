@@ -4,6 +4,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -109,6 +110,27 @@ TEST_F(ConfiguredEmulator, the_programming_port_shows_words_of_the_first_cycle) 
   wait_until_not_zero(line, "02 30 31 30 30 30 30 32 03 35 36");  // D0 counts scans
   emulator.send_signal(SIGTERM);
   EXPECT_EQ(emulator.wait_for_exit(), 0);
+}
+
+TEST_F(ConfiguredEmulator, the_report_shows_the_real_time_data_of_each_cycle_all_of_one_scan) {
+  // Both words are equal after each scan.
+  write(
+      "twins.il",
+      "PROGRAM twins\nVAR a AT %MW0 : INT; b AT %MW1 : INT; END_VAR\nLD a\nADD 1\nST a\nST b\nEND_PROGRAM\n");
+  configure("twins.il", "per-cycle");
+  std::ofstream{path, std::ios::app} << "[realtime_data]\nsignals = [\"%MW0\", \"%MW1\"]\n";
+  EmulatorProcess emulator{{"--config", path, "--seconds", "1"}};
+  ASSERT_TRUE(emulator.wait_for_text("RUN\n"));
+  emulator.send_signal(SIGUSR1);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_NE(emulator.printed().find("\nvalues of cycle fast after scan "), std::string::npos)
+      << emulator.printed();
+  const std::regex twins{
+      "values of cycle slow after scan [1-9][0-9]*, at [0-9.]+ s: "
+      "%MW0 = ([1-9][0-9]*) .16#[0-9A-F]{4}., %MW1 = ([0-9]+) "};
+  std::sregex_iterator line{emulator.printed().begin(), emulator.printed().end(), twins};
+  ASSERT_NE(line, std::sregex_iterator{}) << emulator.printed();
+  for (; line != std::sregex_iterator{}; ++line) EXPECT_EQ((*line)[1], (*line)[2]);
 }
 
 TEST_F(ConfiguredEmulator, the_filling_station_of_the_example_fills_bottles) {

@@ -212,6 +212,16 @@ TEST(CycleReport, shows_each_range_up_to_the_latest_start_and_all_counts) {
   EXPECT_NE(text.find("shortest 1.5 us, mean 1.5 us, longest 1.5 us\n"), std::string::npos);
 }
 
+TEST(CycleReport, shows_real_time_values_with_their_scan_a_bit_as_it_is_a_word_in_both_ways) {
+  RealTimeReading reading{
+      .outcome = ReadOutcome::read, .stamp = {.scan_number = 12, .time = 1500ms}, .values = {1, 0xFFFF, 7}};
+  EXPECT_EQ(values_report("fast", {"%QX0.3", "%MW0", "%MD1"}, reading),
+            "values of cycle fast after scan 12, at 1.500 s: %QX0.3 = 1, %MW0 = 65535 (16#FFFF), %MD1 = 7 "
+            "(16#00000007)\n");
+  reading.outcome = ReadOutcome::nothing_published;
+  EXPECT_EQ(values_report("fast", {"%MW0"}, reading), "values of cycle fast: no scan is complete yet\n");
+}
+
 TEST(CycleReport, tells_a_fault_with_code_scan_and_step) {
   const Fault fault{FaultCode::watchdog, ScanAction::execute, 1234, 150'012us};
   EXPECT_EQ(to_string(fault),
