@@ -4,7 +4,8 @@
 //   X n, Y n        bit n of %I, of %Q: X10 is %IX1.0. Read only; Y as this cycle has set it
 //   D0 to D7999     %MW of the same number
 //   M0 to M3071     bit n from %MX16000.0 on, after the last D
-//   all others      there is none: NAK
+//   all others      there is none: NAK. T, C and S, too: timers and counters of a program in IEC 61131-3 are instances
+//                   without an address, steps are variables as it likes; who wants them outside gives them a %M
 //
 // Device addresses are those of an FX3U. A request of many devices sees one image; a write happens whole or not at all.
 // What the gateway refuses (words that other cycles send, a full queue) is answered NAK; a request that no scan serves
