@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -15,7 +16,7 @@
 #include <sys/prctl.h>
 #include <CLI/CLI.hpp>
 
-#include "emulator_models/configured_archive.hpp"
+#include "emulator_models/configured_observer.hpp"
 #include "emulator_models/configured_port.hpp"
 #include "emulator_models/cycle_report.hpp"
 #include "emulator_models/emulator_handler.hpp"
@@ -135,19 +136,20 @@ class Watcher {
 class ConfiguredEmulator {
  public:
   explicit ConfiguredEmulator(const ConfiguredEmulatorOptions& options)
-      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_, open_archive} {}
+      : options_{options}, plc_{options.path, soft_plc::read_file, make_driver, clock_, make_observer} {}
 
   int run(const EmulatorOptions& port) {
     if (const std::string refusal = load(); !refusal.empty()) {
       complain(refusal);
       return exit_usage;
     }
-    ConfiguredPort programming_port{plc_};
+    ConfiguredPort programming_port{plc_, over_the_wire_};
     Ports ports{programming_port};
     if (const int code = ports.open(port); code != exit_ended) return code;
     introduce();
     static_cast<void>(plc_.plc()->order_run(soft_plc::StartKind::cold));
     watch();
+    const std::lock_guard lock{mutex_};
     plc_.plc()->stop_now();
     watcher_.look(plc_);
     report();
@@ -155,9 +157,9 @@ class ConfiguredEmulator {
   }
 
  private:
-  static tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> open_archive(
+  static tl::expected<std::unique_ptr<soft_plc::PlcObserver>, std::string> make_observer(
       const soft_plc::PlcConfiguration& configuration, std::chrono::nanoseconds power_up) {
-    return open_configured_archive(configuration, power_up, complain);
+    return make_configured_observer(configuration, power_up, complain);
   }
 
   /// @return why the file is refused; empty if it is in use
@@ -181,9 +183,9 @@ class ConfiguredEmulator {
     sigemptyset(&signals);
     for (const int signal : handled_signals) sigaddset(&signals, signal);
     const auto end = steady_clock::now() + std::chrono::seconds{options_.seconds};
-    watcher_.look(plc_);
     while (options_.seconds == 0 || steady_clock::now() < end) {
       const int signal = sigtimedwait(&signals, nullptr, &look_interval);
+      const std::lock_guard lock{mutex_};
       watcher_.look(plc_);
       if (signal == SIGINT || signal == SIGTERM) return;
       if (signal == SIGHUP) reload();
@@ -194,12 +196,27 @@ class ConfiguredEmulator {
 
   void reload() {
     const auto before = plc_.plc();
-    if (const std::string refusal = load(); !refusal.empty()) {
+    tell_change(load(), "loaded again", before);
+  }
+
+  /// On the thread of a port.
+  tl::expected<void, std::string> reload_over_the_wire(std::string_view text) {
+    const std::lock_guard lock{mutex_};
+    const auto before = plc_.plc();
+    // Without a name: the sender knows the file, and puts it in front of the place.
+    auto done = plc_.reload(text, {});
+    tell_change(done ? std::string{} : "over the wire" + done.error(), "loaded over the wire", before);
+    return done;
+  }
+
+  void tell_change(const std::string& refusal, const std::string& loaded,
+                   const std::shared_ptr<SoftPlc>& before) const {
+    if (!refusal.empty()) {
       complain("refused, the configuration of before goes on: " + refusal);
     } else if (plc_.plc() == before) {
-      say("loaded again; counts from the next scan of each cycle on");
+      say(loaded + "; counts from the next scan of each cycle on");
     } else {
-      say("loaded again: a new PLC, in STOP; SIGUSR2 starts it");
+      say(loaded + ": a new PLC, in STOP; SIGUSR2 starts it");
     }
   }
 
@@ -212,12 +229,25 @@ class ConfiguredEmulator {
     }
   }
 
-  void report() { say(cycle_report(plc_.configuration(), *plc_.plc(), clock_.now())); }
+  void report() {
+    const auto configuration = plc_.configuration();
+    std::string text = cycle_report(configuration, *plc_.plc(), clock_.now());
+    if (!configuration.realtime_signals.empty()) {
+      for (std::size_t i = 0; i < configuration.cycles.size(); ++i)
+        text += values_report(configuration.cycles[i].name, configuration.realtime_signals,
+                              plc_.realtime_values(i));
+    }
+    say(text);
+  }
 
   const ConfiguredEmulatorOptions& options_;
   soft_plc::SteadyPlcClock clock_;
   ConfiguredPlc plc_;
   Watcher watcher_;
+  /// A configuration over the wire comes on another thread than signals: what changes the PLC, and what looks at it with
+  /// its configuration, goes one after the other.
+  std::mutex mutex_;
+  ConfigurationService over_the_wire_{[this](std::string_view text) { return reload_over_the_wire(text); }};
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 //   start             RUN
 //   SIGINT, SIGTERM, end of --seconds   STOP, drivers get the safe outputs, report; exit 0
 //   SIGHUP            the file is loaded again; a bad one, or one that needs STOP, is refused whole and told
+//   over the wire     another configuration comes to the programming port (configuration_frames.hpp): the same; the file
+//                     stays as it is, and counts again with SIGHUP and with the next start
 //   SIGUSR1           report
 //   SIGUSR2           the RUN/STOP switch: STOP; or reset of a fault and cold RUN
 //

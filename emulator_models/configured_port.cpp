@@ -59,6 +59,7 @@ std::optional<Place> place_of(unsigned address, AddressSpace space) noexcept {
 
 FrameBytes ConfiguredPort::process(std::span<const std::byte> request) noexcept {
   if (request.size() == 1 && request.front() == protocol::fx::enq) return single(protocol::fx::ack);
+  if (const auto transfer = decode_transfer_request(request)) return encode(configuration_.answer(*transfer));
   const auto decoded = protocol::fx::decode_request(request);
   if (!decoded) {
     const bool is_frame = decoded.error() != protocol::fx::FrameError::no_frame &&

@@ -4,13 +4,17 @@
 //   X n, Y n        bit n of %I, of %Q: X10 is %IX1.0. Read only; Y as this cycle has set it
 //   D0 to D7999     %MW of the same number
 //   M0 to M3071     bit n from %MX16000.0 on, after the last D
-//   all others      there is none: NAK
+//   all others      there is none: NAK. T, C and S, too: timers and counters of a program in IEC 61131-3 are instances
+//                   without an address, steps are variables as it likes; who wants them outside gives them a %M
 //
 // Device addresses are those of an FX3U. A request of many devices sees one image; a write happens whole or not at all.
 // What the gateway refuses (words that other cycles send, a full queue) is answered NAK; a request that no scan serves
 // in answer_timeout_ms is met with silence, and not carried out later.
+//
+// The messages of configuration_frames.hpp are answered, too, between FX frames: no FX tool sends them.
 #pragma once
 
+#include "emulator_models/configuration_service.hpp"
 #include "emulator_models/i_plc_emulator.hpp"
 #include "emulator_models/soft_plc/configured_plc.hpp"
 #include "protocol/fx/address_map.hpp"
@@ -24,8 +28,10 @@ class ConfiguredPort final : public IPlcEmulator {
   /// Of %M.
   static constexpr std::size_t relays_first_byte = 2 * data_registers_count;
 
-  /// @param plc  with a configuration; must outlive the port
-  explicit ConfiguredPort(soft_plc::ConfiguredPlc& plc) noexcept : plc_{plc} {}
+  /// @param plc            with a configuration; must outlive the port
+  /// @param configuration  takes another one; must outlive the port
+  ConfiguredPort(soft_plc::ConfiguredPlc& plc, ConfigurationService& configuration) noexcept
+      : plc_{plc}, configuration_{configuration} {}
 
   [[nodiscard]] protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override;
 
@@ -35,6 +41,7 @@ class ConfiguredPort final : public IPlcEmulator {
   [[nodiscard]] soft_plc::Gateway::Result ask(std::vector<soft_plc::GatewayItem> items);
 
   soft_plc::ConfiguredPlc& plc_;
+  ConfigurationService& configuration_;
 };
 
 }  // namespace emulator_models

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "emulator_models/soft_plc/il_address.hpp"
+
 namespace emulator_models {
 namespace {
 
@@ -77,7 +79,28 @@ std::string histogram(const StartDelays& delays) {
   return text;
 }
 
+/// A bit as it is, a word also as its digits: the address does not tell whether it has a sign.
+std::string value_text(const std::string& address, std::uint64_t value) {
+  const auto type = soft_plc::parse_address(address).value().type;
+  if (type == soft_plc::ElementaryType::boolean) return fmt::format("{} = {}", address, value);
+  return fmt::format("{} = {} (16#{:0{}X})", address, value, value, 2 * soft_plc::size_bytes(type));
+}
+
 }  // namespace
+
+std::string values_report(const std::string& name, const std::vector<std::string>& signals,
+                          const soft_plc::RealTimeReading& reading) {
+  if (reading.outcome == soft_plc::ReadOutcome::nothing_published)
+    return fmt::format("values of cycle {}: no scan is complete yet\n", name);
+  if (reading.outcome == soft_plc::ReadOutcome::busy)
+    return fmt::format("values of cycle {}: its scans are too fast to be read\n", name);
+  std::string text =
+      fmt::format("values of cycle {} after scan {}, at {:.3f} s: ", name, reading.stamp.scan_number,
+                  std::chrono::duration<double>(reading.stamp.time).count());
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    text += (i > 0 ? ", " : "") + value_text(signals[i], reading.values[i]);
+  return text + '\n';
+}
 
 std::string to_string(const soft_plc::Fault& fault) {
   return fmt::format("{}; after {} of scan {}, in {}", text_of(fault.code), brief(fault.scan_time),

@@ -18,6 +18,11 @@ namespace emulator_models {
                                        const soft_plc::CycleStatus& status,
                                        const soft_plc::StartDelays& delays);
 
+/// "values of cycle fast after scan 1234, at 12.345 s: %QX0.0 = 1, %MW9 = 255 (16#00FF)"
+/// @param signals  their addresses, in the order of the values
+[[nodiscard]] std::string values_report(const std::string& name, const std::vector<std::string>& signals,
+                                        const soft_plc::RealTimeReading& reading);
+
 /// "watchdog (1): the scan was longer than its limit; after 150.012 ms of scan 1234, in execute"
 [[nodiscard]] std::string to_string(const soft_plc::Fault& fault);
 

@@ -33,6 +33,7 @@
 #include "emulator_models/program_loading.hpp"
 #include "emulator_models/pty_server.hpp"
 #include "emulator_models/scan_boundary_port.hpp"
+#include "emulator_models/send_configuration.hpp"
 #include "emulator_models/served_segment.hpp"
 
 namespace {
@@ -188,11 +189,14 @@ int checked_main(int argc, char** argv) {
   add_options(app, options);
   ConfiguredEmulatorOptions configured;
   add_configured_options(app, configured);
+  SendConfigurationOptions sent;
+  add_send_configuration_options(app, sent);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ended : exit_usage;
   }
+  if (!sent.path.empty()) return run_send_configuration(sent, options);
   if (!configured.path.empty()) return run_configured_emulator(configured, options);
   if (options.segment_name.empty() && !options.pty)
     return complain(exit_usage, "nothing to serve: give --segment NAME, --pty, or both (--help)");

@@ -154,7 +154,8 @@ bool ArchiveDatabase::set_up(bool is_new) noexcept {
 
 bool ArchiveDatabase::begin_power_up() noexcept {
   if (!execute("DELETE FROM power_up WHERE id NOT IN (SELECT power_up FROM event);"
-               "DELETE FROM signal WHERE power_up NOT IN (SELECT id FROM power_up)") ||
+               "DELETE FROM signal WHERE power_up NOT IN (SELECT id FROM power_up);"
+               "DELETE FROM program WHERE power_up NOT IN (SELECT id FROM power_up)") ||
       !execute(
           fmt::format("INSERT INTO power_up VALUES ((SELECT max(coalesce((SELECT max(id) FROM power_up), 0),"
                       "coalesce((SELECT power_up FROM event ORDER BY id DESC LIMIT 1), 0)) + 1), {})",
@@ -163,10 +164,15 @@ bool ArchiveDatabase::begin_power_up() noexcept {
     return false;
   }
   power_up_ = sqlite3_last_insert_rowid(database_);
-  for (std::size_t i = 0; i < config_.signal_names.size(); ++i) {
+  return store_names("signal", config_.signal_names) && store_names("program", config_.program_files);
+}
+
+/// Of this power_up, by their order.
+bool ArchiveDatabase::store_names(const char* table, const std::vector<std::string>& names) noexcept {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     char* const sql =
-        sqlite3_mprintf("INSERT INTO signal VALUES (%lld, %lld, %Q)", static_cast<long long>(power_up_),
-                        static_cast<long long>(i), config_.signal_names[i].c_str());
+        sqlite3_mprintf("INSERT INTO %s VALUES (%lld, %lld, %Q)", table, static_cast<long long>(power_up_),
+                        static_cast<long long>(i), names[i].c_str());
     const bool stored = sql != nullptr && execute(sql);
     sqlite3_free(sql);
     if (!stored) return false;

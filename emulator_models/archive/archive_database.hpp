@@ -42,6 +42,7 @@ struct ArchiveConfig {
   std::int64_t wal_bytes_max = std::int64_t{4} << 20;
   std::chrono::nanoseconds power_up_wall_clock{0};  ///< since 1970; times of records count from it
   std::vector<std::string> signal_names{};          ///< by number
+  std::vector<std::string> program_files{};         ///< by cycle; places of faults are in them
 };
 
 enum class ArchiveErrorCode : std::uint8_t {
@@ -95,6 +96,7 @@ class ArchiveDatabase {
   [[nodiscard]] tl::expected<void, ArchiveError> check_identity();
   [[nodiscard]] bool set_up(bool is_new) noexcept;
   [[nodiscard]] bool begin_power_up() noexcept;
+  [[nodiscard]] bool store_names(const char* table, const std::vector<std::string>& names) noexcept;
   [[nodiscard]] bool insert(const soft_plc::EventRecord& record) noexcept;
   [[nodiscard]] bool make_room(std::size_t batch_rows) noexcept;
   [[nodiscard]] std::size_t batch_rows_max() const noexcept;

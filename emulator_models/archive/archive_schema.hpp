@@ -8,12 +8,14 @@ namespace emulator_models::archive {
 
 /// "ltPA": what tells an archive from any other SQLite file.
 inline constexpr std::int32_t application_id = 0x6C745041;
-inline constexpr std::int32_t schema_version = 1;
+inline constexpr std::int32_t schema_version = 2;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE power_up (id INTEGER PRIMARY KEY, wall_clock_ns INTEGER NOT NULL);
 CREATE TABLE signal (power_up INTEGER NOT NULL, number INTEGER NOT NULL, name TEXT NOT NULL,
                      PRIMARY KEY (power_up, number)) WITHOUT ROWID;
+CREATE TABLE program (power_up INTEGER NOT NULL, cycle INTEGER NOT NULL, file TEXT NOT NULL,
+                      PRIMARY KEY (power_up, cycle)) WITHOUT ROWID;
 CREATE TABLE event (id INTEGER PRIMARY KEY, power_up INTEGER NOT NULL, time_ns INTEGER NOT NULL, kind INTEGER NOT NULL,
                     cycle INTEGER NOT NULL, code INTEGER NOT NULL, scan_number INTEGER NOT NULL,
                     v0 INTEGER NOT NULL, v1 INTEGER NOT NULL, v2 INTEGER NOT NULL, v3 INTEGER NOT NULL,
@@ -31,7 +33,7 @@ CREATE VIEW overruns AS
   SELECT id, power_up, seconds, wall_clock, cycle, scan_number, CASE WHEN v0 >= 0 THEN v0 / 1e6 END AS scan_ms
   FROM timed_event WHERE kind = 2;
 CREATE VIEW faults AS
-  SELECT id, power_up, seconds, wall_clock, cycle, scan_number,
+  SELECT id, e.power_up, seconds, wall_clock, e.cycle, scan_number,
          CASE code WHEN 1 THEN 'watchdog' WHEN 2 THEN 'overrun' WHEN 3 THEN 'program failed' WHEN 4 THEN 'other cycle' WHEN 5 THEN 'inputs stale'
                    ELSE 'code ' || code END AS fault,
          CASE v0 WHEN 0 THEN 'system analysis' WHEN 1 THEN 'clear fault' WHEN 2 THEN 'initialise'
@@ -39,8 +41,8 @@ CREATE VIEW faults AS
                  WHEN 6 THEN 'execute' WHEN 7 THEN 'write to cycles' WHEN 8 THEN 'write outputs'
                  WHEN 9 THEN 'refresh output image' WHEN 10 THEN 'wait' WHEN 11 THEN 'enter fault'
                  ELSE 'action ' || v0 END AS phase,
-         v1 / 1e6 AS scan_ms, CASE WHEN v2 > 0 THEN v2 || ':' || v3 END AS place
-  FROM timed_event WHERE kind = 3;
+         v1 / 1e6 AS scan_ms, CASE WHEN v2 > 0 THEN coalesce(file || ':', '') || v2 || ':' || v3 END AS place
+  FROM timed_event e LEFT JOIN program p ON p.power_up = e.power_up AND p.cycle = e.cycle WHERE kind = 3;
 CREATE VIEW port_writes AS
   SELECT id, power_up, seconds, wall_clock, cycle AS port, code AS area, v0 AS address,
          CASE WHEN v3 > 0 THEN v3 - 1 END AS bit, v1 AS bytes, printf('%016x', v2) AS first_bytes

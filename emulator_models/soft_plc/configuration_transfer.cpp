@@ -40,7 +40,9 @@ tl::expected<void, std::string> ConfigurationTransfer::take(const Chunk& chunk) 
   return {};
 }
 
-tl::expected<void, std::string> ConfigurationTransfer::take(const Commit& /*commit*/) {
+tl::expected<void, std::string> ConfigurationTransfer::take(const Commit& commit) {
+  if (begin_.bytes != 0 && commit.sum != begin_.sum)
+    return tl::unexpected{std::string{"another transfer has begun meanwhile; send all again"}};
   const Begin begin = std::exchange(begin_, {});
   const std::string text = std::exchange(text_, {});
   if (begin.bytes == 0) return tl::unexpected{std::string{"no transfer is under way; send begin first"}};

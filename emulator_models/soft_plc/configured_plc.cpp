@@ -18,6 +18,17 @@ bool is_same(const ArchiveSettings& a, const ArchiveSettings& b) {
   return a.path == b.path && a.rows_max == b.rows_max && a.signals == b.signals;
 }
 
+std::string needs_stop(const std::string& name, const std::string& change) {
+  return name + ": changes " + change +
+         ", which cannot be done in RUN; order STOP, load it again, and order RUN";
+}
+
+std::string refusal_of_archive(const std::string& name, const ArchiveSettings& archive,
+                               const std::string& why) {
+  return name + ":" + std::to_string(archive.path_place.line) + ":" +
+         std::to_string(archive.path_place.column) + ": " + why;
+}
+
 /// A PLC with what watches it: whoever keeps the PLC keeps both.
 struct WatchedPlc {
   std::unique_ptr<PlcObserver> observer;
@@ -41,6 +52,7 @@ std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfigu
   }
   if (!std::ranges::equal(old.drivers, next.drivers, is_same_driver)) return "the drivers";
   if (!is_same(old.archive, next.archive)) return "the archive";
+  if (old.realtime_signals != next.realtime_signals) return "the real-time data";
   return {};
 }
 
@@ -56,8 +68,9 @@ ConfiguredPlc::~ConfiguredPlc() {
   if (plc_) plc_->gateway().close();
 }
 
-tl::expected<void, std::string> ConfiguredPlc::reload(std::string_view text) {
-  auto next = parse_configuration(text, file_name_, reader_);
+tl::expected<void, std::string> ConfiguredPlc::reload(std::string_view text, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path{file_name_}.parent_path();
+  auto next = parse_configuration(text, name, folder, reader_);
   if (!next) return tl::unexpected{next.error()};
   const std::lock_guard lock{mutex_};
   const std::string change = plc_ ? change_that_needs_stop(configuration_, *next) : "all";
@@ -66,24 +79,14 @@ tl::expected<void, std::string> ConfiguredPlc::reload(std::string_view text) {
     for (const ConfiguredCycle& cycle : next->cycles) scans.push_back(cycle.config.scan);
     if (auto done = plc_->reconfigure(scans, next->gateway); !done) return done;
   } else {
-    if (plc_ && !plc_->is_stopped()) return tl::unexpected{needs_stop(change)};
-    if (auto built = build(*next, change); !built) return built;
+    if (plc_ && !plc_->is_stopped()) return tl::unexpected{needs_stop(name, change)};
+    if (auto built = build(*next, name, change); !built) return built;
   }
   configuration_ = std::move(*next);
   return {};
 }
 
-std::string ConfiguredPlc::needs_stop(const std::string& change) const {
-  return file_name_ + ": changes " + change +
-         ", which cannot be done in RUN; order STOP, load it again, and order RUN";
-}
-
-std::string ConfiguredPlc::refusal_of_archive(const ArchiveSettings& archive, const std::string& why) const {
-  return file_name_ + ":" + std::to_string(archive.path_place.line) + ":" +
-         std::to_string(archive.path_place.column) + ": " + why;
-}
-
-tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next,
+tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& next, const std::string& name,
                                                      const std::string& change) {
   SoftPlcSetup setup;
   setup.slice_intervals = next.slice_intervals;
@@ -97,26 +100,27 @@ tl::expected<void, std::string> ConfiguredPlc::build(const PlcConfiguration& nex
   for (const ConfiguredDriver& driver : next.drivers) {
     auto made = factory_(driver);
     if (!made)
-      return tl::unexpected{file_name_ + ": driver " + driver.config.name + ": there is no kind \"" +
-                            driver.kind + "\" in this program"};
+      return tl::unexpected{name + ": driver " + driver.config.name + ": there is no kind \"" + driver.kind +
+                            "\" in this program"};
     setup.drivers.push_back({driver.config, std::move(made)});
   }
   const std::chrono::nanoseconds power_up = clock_.now();
   auto watched = std::make_shared<WatchedPlc>();
   if (observers_) {
     auto observer = observers_(next, power_up);
-    if (!observer) return tl::unexpected{refusal_of_archive(next.archive, observer.error())};
+    if (!observer) return tl::unexpected{refusal_of_archive(name, next.archive, observer.error())};
     watched->observer = std::move(*observer);
     setup.observer = watched->observer.get();
   }
   auto plc = SoftPlc::make(std::move(setup), power_up);
-  if (!plc) return tl::unexpected{file_name_ + ": " + plc.error()};
+  if (!plc) return tl::unexpected{name + ": " + plc.error()};
   watched->plc = std::move(*plc);
   // Meanwhile somebody may have ordered RUN.
-  if (plc_ && !plc_->retire()) return tl::unexpected{needs_stop(change)};
+  if (plc_ && !plc_->retire()) return tl::unexpected{needs_stop(name, change)};
   if (plc_) plc_->gateway().close();
   threads_.reset();
   programs_ = std::move(programs);
+  observer_ = watched->observer.get();
   SoftPlc* const built = watched->plc.get();
   plc_ = std::shared_ptr<SoftPlc>{std::move(watched), built};
   threads_ = std::make_unique<PlcThreads>(*plc_, clock_, next.threading, next.realtime);
@@ -141,6 +145,17 @@ std::chrono::milliseconds ConfiguredPlc::answer_timeout() const {
 std::optional<RunTimeFault> ConfiguredPlc::run_time_fault(std::size_t index) const {
   const std::lock_guard lock{mutex_};
   return index < programs_.size() ? programs_[index]->run_time_fault() : std::nullopt;
+}
+
+RealTimeReading ConfiguredPlc::realtime_values(std::size_t index) const {
+  const std::lock_guard lock{mutex_};
+  RealTimeReading reading;
+  if (observer_ == nullptr || index >= programs_.size()) return reading;
+  const RealTimeValues* const values = observer_->values_of(index);
+  if (values == nullptr) return reading;
+  reading.values.resize(values->words_count());
+  reading.outcome = values->read(reading.values, reading.stamp);
+  return reading;
 }
 
 std::string ConfiguredPlc::realtime_refusal() const {

@@ -1,7 +1,7 @@
 // A soft PLC as its configuration says, and the change to another configuration while it works.
 //
-// While in RUN may change: period, watchdog's limit and overrun rule of a cycle, limits of the gateway, real-time data
-// settings. They count from the next scan of each cycle on. All else needs STOP: then the PLC is built anew.
+// While in RUN may change: period, watchdog's limit and overrun rule of a cycle, limits of the gateway. They count from the
+// next scan of each cycle on. All else needs STOP: then the PLC is built anew.
 //
 // Invariants
 //   I1  a configuration that is bad, or that needs a STOP which is not there, changes nothing: the old one goes on.
@@ -22,6 +22,7 @@
 #include "emulator_models/soft_plc/il_cycle.hpp"
 #include "emulator_models/soft_plc/plc_configuration.hpp"
 #include "emulator_models/soft_plc/plc_observer.hpp"
+#include "emulator_models/soft_plc/real_time_values.hpp"
 
 namespace emulator_models::soft_plc {
 
@@ -33,6 +34,13 @@ using DriverFactory = std::function<std::unique_ptr<IoDriver>(const ConfiguredDr
 ///                  wrong with the archive that is asked for
 using ObserverFactory = std::function<tl::expected<std::unique_ptr<PlcObserver>, std::string>(
     const PlcConfiguration&, std::chrono::nanoseconds power_up)>;
+
+/// The real-time values of a cycle, in the order of PlcConfiguration::realtime_signals; all of one scan.
+struct RealTimeReading {
+  ReadOutcome outcome = ReadOutcome::nothing_published;
+  ScanStamp stamp;                    ///< of no meaning unless `read`, as what follows
+  std::vector<std::uint64_t> values;  ///< a bit is 0 or 1; no sign
+};
 
 /// @return what has changed that needs a STOP, "the program of cycle fast"; empty if nothing
 [[nodiscard]] std::string change_that_needs_stop(const PlcConfiguration& old, const PlcConfiguration& next);
@@ -49,7 +57,11 @@ class ConfiguredPlc {
   ~ConfiguredPlc();
 
   /// @return nothing; or why the old configuration goes on
-  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text);
+  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text) {
+    return reload(text, file_name_);
+  }
+  /// @param name  of a text that is not the file; stands in front of errors in its place, ":line:column: " after it
+  [[nodiscard]] tl::expected<void, std::string> reload(std::string_view text, const std::string& name);
   /// The PLC of now; one that was replaced refuses what is asked of its gateway. None before the first reload.
   [[nodiscard]] std::shared_ptr<SoftPlc> plc() const;
   [[nodiscard]] PlcConfiguration configuration() const;
@@ -58,12 +70,12 @@ class ConfiguredPlc {
   /// @param index  of a cycle of plc()
   /// @return       where its program has failed, since its last start; none for an index that is not there
   [[nodiscard]] std::optional<RunTimeFault> run_time_fault(std::size_t index) const;
+  /// @param index  of a cycle of plc(); reading it holds up no scan
+  [[nodiscard]] RealTimeReading realtime_values(std::size_t index) const;
   [[nodiscard]] std::string realtime_refusal() const;
 
  private:
-  [[nodiscard]] std::string needs_stop(const std::string& change) const;
-  [[nodiscard]] std::string refusal_of_archive(const ArchiveSettings& archive, const std::string& why) const;
-  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next,
+  [[nodiscard]] tl::expected<void, std::string> build(const PlcConfiguration& next, const std::string& name,
                                                       const std::string& change);
 
   const std::string file_name_;
@@ -75,7 +87,8 @@ class ConfiguredPlc {
   // All guarded by mutex_.
   PlcConfiguration configuration_;
   std::shared_ptr<SoftPlc> plc_;
-  std::vector<const IlCycle*> programs_;  ///< of plc_
+  std::vector<const IlCycle*> programs_;   ///< of plc_
+  const PlcObserver* observer_ = nullptr;  ///< of plc_; null: nobody watches
   std::unique_ptr<PlcThreads> threads_;
 };
 

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
+#include "emulator_models/soft_plc/il_error.hpp"
 #include "emulator_models/soft_plc/scan_program.hpp"
 
 namespace emulator_models::soft_plc {
@@ -49,6 +51,8 @@ class CycleBody {
   virtual void start(StartKind kind) noexcept = 0;
   /// As ScanProgram::execute.
   virtual Progress execute(const ScanStep& step) noexcept = 0;
+  /// @return where in its source the program has failed, when execute() has just said so; none of a body without source
+  [[nodiscard]] virtual std::optional<SourcePlace> failed_at() const noexcept { return std::nullopt; }
   /// The scan under way ends here: the next execute begins at the first instruction.
   virtual void give_up_scan() noexcept = 0;
 

@@ -62,6 +62,11 @@ Progress IlCycle::execute(const ScanStep& step) noexcept {
   return Progress::failed;
 }
 
+std::optional<SourcePlace> IlCycle::failed_at() const noexcept {
+  const auto fault = run_time_fault();
+  return fault ? std::optional{fault->place} : std::nullopt;
+}
+
 std::optional<RunTimeFault> IlCycle::run_time_fault() const noexcept {
   const std::lock_guard lock{mutex_};
   return fault_;

@@ -34,6 +34,7 @@ class IlCycle final : public CycleBody {
   std::span<const std::byte> output_mask() const noexcept override { return output_mask_; }
   void start(StartKind kind) noexcept override;
   Progress execute(const ScanStep& step) noexcept override;
+  std::optional<SourcePlace> failed_at() const noexcept override;
   void give_up_scan() noexcept override { machine_.abandon_scan(); }
 
   /// From any thread.

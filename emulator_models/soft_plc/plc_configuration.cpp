@@ -1,7 +1,6 @@
 #include "emulator_models/soft_plc/plc_configuration.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <set>
 #include <utility>
@@ -69,8 +68,8 @@ ArchiveSettings archive_of(TomlTable& table, const std::filesystem::path& folder
 
 class Parser {
  public:
-  Parser(const std::string& file_name, const FileReader& reader)
-      : folder_{std::filesystem::path{file_name}.parent_path()}, reader_{reader} {}
+  Parser(std::filesystem::path folder, const FileReader& reader)
+      : folder_{std::move(folder)}, reader_{reader} {}
 
   PlcConfiguration parse(const toml::table& root) {
     TomlTable file{root, "the file"};
@@ -244,15 +243,22 @@ std::optional<std::string> read_file(const std::string& path) {
 tl::expected<PlcConfiguration, std::string> parse_configuration(std::string_view text,
                                                                 const std::string& file_name,
                                                                 const FileReader& reader) {
+  return parse_configuration(text, file_name, std::filesystem::path{file_name}.parent_path(), reader);
+}
+
+tl::expected<PlcConfiguration, std::string> parse_configuration(std::string_view text,
+                                                                const std::string& name,
+                                                                const std::filesystem::path& folder,
+                                                                const FileReader& reader) {
   if (text.size() > configuration_bytes_max)
     return tl::unexpected{fmt::format("{}:1:1: longer than {} bytes; a configuration is a few hundred lines",
-                                      file_name, configuration_bytes_max)};
+                                      name, configuration_bytes_max)};
   try {
-    return Parser{file_name, reader}.parse(toml::parse(text, file_name));
+    return Parser{folder, reader}.parse(toml::parse(text, name));
   } catch (const ConfigurationFailure& failure) {
-    return tl::unexpected{at(file_name, failure.place, failure.message)};
+    return tl::unexpected{at(name, failure.place, failure.message)};
   } catch (const toml::parse_error& error) {
-    return tl::unexpected{at(file_name, error.source().begin, error.description())};
+    return tl::unexpected{at(name, error.source().begin, error.description())};
   }
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -70,5 +71,11 @@ using FileReader = std::function<std::optional<std::string>(const std::string& p
 [[nodiscard]] tl::expected<PlcConfiguration, std::string> parse_configuration(std::string_view text,
                                                                               const std::string& file_name,
                                                                               const FileReader& reader);
+/// For a text that is no file of this folder.
+/// @param name    stands in front of errors in place of the file's
+/// @param folder  to which paths in the text are relative
+[[nodiscard]] tl::expected<PlcConfiguration, std::string> parse_configuration(
+    std::string_view text, const std::string& name, const std::filesystem::path& folder,
+    const FileReader& reader);
 
 }  // namespace emulator_models::soft_plc

@@ -10,6 +10,7 @@
 #include "emulator_models/soft_plc/gateway.hpp"
 #include "emulator_models/soft_plc/io_manager.hpp"
 #include "emulator_models/soft_plc/output_gate.hpp"
+#include "emulator_models/soft_plc/plc_observer.hpp"
 #include "emulator_models/soft_plc/scan_program.hpp"
 #include "emulator_models/soft_plc/variable_exchange.hpp"
 
@@ -62,7 +63,11 @@ class PlcCycle final : public ScanProgram {
 #ifdef LTSIM_MUTANT_GATEWAY_BETWEEN_SLICES  // a request need not wait for the end of the scan
     gateway_.serve(index_, image_, parts_.observer);
 #endif
-    return body_->execute(step);
+    const Progress progress = body_->execute(step);
+    if (progress == Progress::failed && parts_.observer != nullptr) {
+      if (const auto place = body_->failed_at()) parts_.observer->program_failed(index_, *place);
+    }
+    return progress;
   }
   void write_to_cycles() noexcept override { parts_.exchange.send(index_, image_.memory); }
   /// The body's image is the output image.

@@ -1,16 +1,18 @@
 // Who watches a SoftPlc: called on the thread of the cycle, in the middle of its scan. So it must neither wait nor throw
-// nor call back.
+// nor call back; values_of() is for any thread.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 
 #include "emulator_models/soft_plc/cycle_body.hpp"
+#include "emulator_models/soft_plc/il_error.hpp"
 #include "emulator_models/soft_plc/scan_task.hpp"
 
 namespace emulator_models::soft_plc {
 
 struct GatewayItem;
+class RealTimeValues;
 
 class PlcObserver {
  public:
@@ -21,8 +23,14 @@ class PlcObserver {
   /// @param image  whole between two scans
   virtual void step_ordered(std::size_t cycle, const ScanTask& task, const CycleImage& image,
                             std::chrono::nanoseconds now) noexcept = 0;
+  /// In phase 4 of a scan of the cycle, before the step with which its task enters the fault program_failed.
+  virtual void program_failed(std::size_t cycle, SourcePlace place) noexcept = 0;
   /// In phase 1 of a scan of the cycle: what a field device writes.
   virtual void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept = 0;
+  /// @return what any thread may read of the cycle's latest scan; nullptr: nothing is kept
+  [[nodiscard]] virtual const RealTimeValues* values_of(std::size_t /*cycle*/) const noexcept {
+    return nullptr;
+  }
 
  protected:
   PlcObserver() = default;

@@ -34,6 +34,9 @@ class PlcRecorder final : public PlcObserver {
 
   void step_ordered(std::size_t cycle, const ScanTask& task, const CycleImage& image,
                     std::chrono::nanoseconds now) noexcept override;
+  void program_failed(std::size_t cycle, SourcePlace place) noexcept override {
+    cycles_[cycle]->recorder.program_failed_at(place);
+  }
   void gateway_writes(std::size_t cycle, const GatewayItem& item) noexcept override;
   /// When no cycle runs any more: pushes what is summed up.
   void finish(std::chrono::nanoseconds now) noexcept;

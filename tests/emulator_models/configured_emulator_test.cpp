@@ -4,13 +4,13 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <unistd.h>
-
 #include "tests/emulator_models/archive/archive_rig.hpp"
+#include "tests/emulator_models/configured_emulator_rig.hpp"
 #include "tests/emulator_models/emulator_process.hpp"
 #include "tests/protocol/fx/worked_examples.hpp"
 
@@ -28,27 +28,6 @@ void wait_until_not_zero(const SerialLine& line, const char* read) {
     ASSERT_EQ(answer.size(), 8U);
   } while (answer == bytes("02 30 30 30 30 03 43 33"));
 }
-
-/// A folder with a configuration of two cycles; the second runs `program`.
-struct ConfiguredEmulator : testing::Test {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("ltsim-configured-" + std::to_string(::getpid()));
-  const std::string path = (folder / "plc.toml").string();
-
-  ConfiguredEmulator() {
-    std::filesystem::create_directory(folder);
-    write("good.il", "PROGRAM good\nVAR n AT %MW0 : INT; END_VAR\nLD n\nADD 1\nST n\nEND_PROGRAM\n");
-  }
-  ~ConfiguredEmulator() override { std::filesystem::remove_all(folder); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream{folder / name} << text; }
-  void configure(const std::string& program, const std::string& threads = "one", int period_ms = 10) const {
-    write("plc.toml", "[plc]\nthreads = \"" + threads +
-                          "\"\n[[cycle]]\nname = \"fast\"\nprogram = \"good.il\"\nperiod_ms = 1\n"
-                          "[[cycle]]\nname = \"slow\"\nprogram = \"" +
-                          program + "\"\nperiod_ms = " + std::to_string(period_ms) + "\n");
-  }
-};
 
 TEST_F(ConfiguredEmulator, runs_for_the_time_asked_for_and_prints_the_starts_of_each_cycle) {
   configure("good.il");
@@ -133,6 +112,27 @@ TEST_F(ConfiguredEmulator, the_programming_port_shows_words_of_the_first_cycle) 
   EXPECT_EQ(emulator.wait_for_exit(), 0);
 }
 
+TEST_F(ConfiguredEmulator, the_report_shows_the_real_time_data_of_each_cycle_all_of_one_scan) {
+  // Both words are equal after each scan.
+  write(
+      "twins.il",
+      "PROGRAM twins\nVAR a AT %MW0 : INT; b AT %MW1 : INT; END_VAR\nLD a\nADD 1\nST a\nST b\nEND_PROGRAM\n");
+  configure("twins.il", "per-cycle");
+  std::ofstream{path, std::ios::app} << "[realtime_data]\nsignals = [\"%MW0\", \"%MW1\"]\n";
+  EmulatorProcess emulator{{"--config", path, "--seconds", "1"}};
+  ASSERT_TRUE(emulator.wait_for_text("RUN\n"));
+  emulator.send_signal(SIGUSR1);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  EXPECT_NE(emulator.printed().find("\nvalues of cycle fast after scan "), std::string::npos)
+      << emulator.printed();
+  const std::regex twins{
+      "values of cycle slow after scan [1-9][0-9]*, at [0-9.]+ s: "
+      "%MW0 = ([1-9][0-9]*) .16#[0-9A-F]{4}., %MW1 = ([0-9]+) "};
+  std::sregex_iterator line{emulator.printed().begin(), emulator.printed().end(), twins};
+  ASSERT_NE(line, std::sregex_iterator{}) << emulator.printed();
+  for (; line != std::sregex_iterator{}; ++line) EXPECT_EQ((*line)[1], (*line)[2]);
+}
+
 TEST_F(ConfiguredEmulator, the_filling_station_of_the_example_fills_bottles) {
   EmulatorProcess emulator{{"--config", EXAMPLE_CONFIGURATION, "--pty"}};
   const SerialLine line{emulator.wait_for_line("pty: ")};
@@ -167,6 +167,22 @@ TEST_F(ConfiguredEmulator, the_archive_of_the_configuration_has_what_both_cycles
               "0 RUN 1 RUN ");
     EXPECT_EQ(query("SELECT DISTINCT cycle FROM signal_changes"), "1 ");
   }
+}
+
+TEST_F(ConfiguredEmulator, the_archive_names_program_file_line_and_column_of_a_fault) {
+  write("divides.il", "PROGRAM divides\nVAR n : INT; END_VAR\nLD 1\n  DIV n\nEND_PROGRAM\n");
+  configure("divides.il");
+  std::ofstream{path, std::ios::app} << "[archive]\npath = \"plc.archive\"\n";
+  EmulatorProcess emulator{{"--config", path}};
+  EXPECT_TRUE(emulator.wait_for_text("fault in cycle slow: program failed (3)")) << emulator.printed();
+  emulator.send_signal(SIGTERM);
+  EXPECT_EQ(emulator.wait_for_exit(), 0);
+  archive::OtherConnection query{folder / "plc.archive"};
+  const std::string place = (folder / "divides.il").string() + ":4:3";
+  EXPECT_EQ(query("SELECT cycle, place FROM faults WHERE fault = 'program failed'"), "1 " + place + " ");
+  EXPECT_EQ(query("SELECT count(*) FROM faults WHERE cycle = 0 AND place IS NOT NULL"), "0 ");
+  EXPECT_EQ(query("SELECT what FROM history WHERE event = 'fault' AND cycle = 1"),
+            "program failed in execute at " + place + " ");
 }
 
 TEST_F(ConfiguredEmulator, an_archive_that_cannot_be_had_refuses_the_configuration_at_its_line) {

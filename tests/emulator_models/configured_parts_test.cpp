@@ -100,7 +100,8 @@ std::optional<std::string> read_source(const std::string& /*path*/) {
 struct Port : testing::Test {
   SteadyPlcClock clock;
   ConfiguredPlc plc{"plc.toml", read_source, make_driver, clock};
-  ConfiguredPort port{plc};
+  ConfigurationService configuration_service{[this](std::string_view text) { return plc.reload(text, {}); }};
+  ConfiguredPort port{plc, configuration_service};
 
   Port() {
     const auto loaded = plc.reload(configuration);
@@ -209,6 +210,16 @@ TEST(CycleReport, shows_each_range_up_to_the_latest_start_and_all_counts) {
   EXPECT_NE(text.find("  more                       1   0.1000 %\n"), std::string::npos);
   EXPECT_NE(text.find("late: median 4 us, 99 % 4 us, 99.9 % 32 us, most 2 s\n"), std::string::npos) << text;
   EXPECT_NE(text.find("shortest 1.5 us, mean 1.5 us, longest 1.5 us\n"), std::string::npos);
+}
+
+TEST(CycleReport, shows_real_time_values_with_their_scan_a_bit_as_it_is_a_word_in_both_ways) {
+  RealTimeReading reading{
+      .outcome = ReadOutcome::read, .stamp = {.scan_number = 12, .time = 1500ms}, .values = {1, 0xFFFF, 7}};
+  EXPECT_EQ(values_report("fast", {"%QX0.3", "%MW0", "%MD1"}, reading),
+            "values of cycle fast after scan 12, at 1.500 s: %QX0.3 = 1, %MW0 = 65535 (16#FFFF), %MD1 = 7 "
+            "(16#00000007)\n");
+  reading.outcome = ReadOutcome::nothing_published;
+  EXPECT_EQ(values_report("fast", {"%MW0"}, reading), "values of cycle fast: no scan is complete yet\n");
 }
 
 TEST(CycleReport, tells_a_fault_with_code_scan_and_step) {

@@ -27,7 +27,7 @@ EmulatorProcess::EmulatorProcess(const std::vector<std::string>& arguments) {
     const auto is_given = [&](std::string_view option) {
       return std::ranges::find(words, option) != words.end();
     };
-    if (!is_given("--watchdog-ms") && !is_given("--config"))
+    if (!is_given("--watchdog-ms") && !is_given("--config") && !is_given("--send-config"))
       words.insert(words.end(), {"--watchdog-ms", "30000"});
     std::vector<char*> argv{program.data()};
     for (std::string& word : words) argv.push_back(word.data());

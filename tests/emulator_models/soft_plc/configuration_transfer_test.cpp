@@ -28,7 +28,7 @@ TEST(ConfigurationTransfer, a_text_in_chunks_is_loaded_on_commit_and_not_before)
   ASSERT_TRUE(wire.transfer.serve(Chunk{0, "1234"}));
   ASSERT_TRUE(wire.transfer.serve(Chunk{4, "56789"}));
   EXPECT_TRUE(wire.loaded.empty());
-  ASSERT_TRUE(wire.transfer.serve(Commit{}));
+  ASSERT_TRUE(wire.transfer.serve(Commit{sum_of_123456789}));
   EXPECT_EQ(wire.loaded, std::vector<std::string>{"123456789"});
 }
 
@@ -37,8 +37,8 @@ TEST(ConfigurationTransfer, a_damaged_or_short_text_is_never_loaded) {
   for (const char* text : {"123456788", "12345678", ""}) {
     ASSERT_TRUE(wire.transfer.serve(Begin{9, sum_of_123456789}));
     ASSERT_TRUE(wire.transfer.serve(Chunk{0, text}));
-    EXPECT_FALSE(wire.transfer.serve(Commit{}));
-    EXPECT_FALSE(wire.transfer.serve(Commit{})) << "nothing is left of it";
+    EXPECT_FALSE(wire.transfer.serve(Commit{sum_of_123456789}));
+    EXPECT_FALSE(wire.transfer.serve(Commit{sum_of_123456789})) << "nothing is left of it";
   }
   EXPECT_TRUE(wire.loaded.empty());
 }
@@ -50,7 +50,7 @@ TEST(ConfigurationTransfer, a_new_begin_drops_what_has_come_before) {
   ASSERT_TRUE(wire.transfer.serve(Chunk{0, "12"}));
   ASSERT_TRUE(wire.transfer.serve(Begin{9, sum_of_123456789}));
   ASSERT_TRUE(wire.transfer.serve(Chunk{0, "123456789"}));
-  EXPECT_TRUE(wire.transfer.serve(Commit{}));
+  EXPECT_TRUE(wire.transfer.serve(Commit{sum_of_123456789}));
 }
 
 TEST(ConfigurationTransfer, chunks_out_of_order_doubled_or_too_long_are_refused) {
@@ -64,7 +64,20 @@ TEST(ConfigurationTransfer, chunks_out_of_order_doubled_or_too_long_are_refused)
   EXPECT_FALSE(wire.transfer.serve(Chunk{0, "1"}));
   EXPECT_FALSE(wire.transfer.serve(Chunk{1, "234567890"}));
   ASSERT_TRUE(wire.transfer.serve(Chunk{1, "23456789"})) << "what was refused has changed nothing";
-  EXPECT_TRUE(wire.transfer.serve(Commit{}));
+  EXPECT_TRUE(wire.transfer.serve(Commit{sum_of_123456789}));
+}
+
+// I4
+TEST(ConfigurationTransfer, nobody_commits_the_text_of_another) {
+  Wire wire;
+  ASSERT_TRUE(wire.transfer.serve(Begin{1, crc32("1")}));
+  ASSERT_TRUE(wire.transfer.serve(Chunk{0, "1"}));
+  ASSERT_TRUE(wire.transfer.serve(Begin{1, crc32("2")}));
+  ASSERT_TRUE(wire.transfer.serve(Chunk{0, "2"}));
+  EXPECT_FALSE(wire.transfer.serve(Commit{crc32("1")}));
+  EXPECT_TRUE(wire.loaded.empty());
+  EXPECT_TRUE(wire.transfer.serve(Commit{crc32("2")})) << "the other one goes on";
+  EXPECT_EQ(wire.loaded, std::vector<std::string>{"2"});
 }
 
 }  // namespace

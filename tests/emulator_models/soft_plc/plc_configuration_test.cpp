@@ -260,6 +260,7 @@ TEST(ConfiguredPlc, each_change_that_needs_STOP_is_named) {
   EXPECT_EQ(change(good + driver("d", {}), good + driver("d", "late_ms = 7\n")), "the drivers");
   for (const char* const archive : {"path = \"a\"", "rows_max = 2000", "signals = [\"%QX0.0\"]"})
     EXPECT_EQ(change(good, good + "[archive]\n" + archive + "\n"), "the archive") << archive;
+  EXPECT_EQ(change(good, good + "[realtime_data]\nsignals = [\"%QX0.0\"]\n"), "the real-time data");
   auto other = parse_configuration(good, "dir/plc.toml", read_source).value();
   other.cycles[0].source += ' ';
   EXPECT_EQ(change_that_needs_stop(parse_configuration(good, "dir/plc.toml", read_source).value(), other),
@@ -320,6 +321,7 @@ class CountingObserver final : public PlcObserver {
                     std::chrono::nanoseconds) noexcept override {
     ++steps_;
   }
+  void program_failed(std::size_t, SourcePlace) noexcept override {}
   void gateway_writes(std::size_t, const GatewayItem&) noexcept override {}
 
  private:

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "emulator_models/soft_plc/il_compiler.hpp"
+#include "emulator_models/soft_plc/il_cycle.hpp"
 #include "tests/emulator_models/soft_plc/plc_rig.hpp"
 
 namespace emulator_models::soft_plc {
@@ -139,6 +141,26 @@ TEST_F(PlcRecorderTest, a_fault_is_recorded_by_the_cycle_that_has_it_and_by_thos
   ASSERT_EQ(other.size(), 1U);
   EXPECT_EQ(own[0].code, static_cast<std::uint16_t>(FaultCode::program_failed));
   EXPECT_EQ(other[0].code, static_cast<std::uint16_t>(FaultCode::other_cycle));
+}
+
+TEST_F(PlcRecorderTest, the_fault_of_a_program_is_recorded_with_its_line_and_column_in_each_threading) {
+  for (const bool one_thread : {true, false}) {
+    auto program = compile("PROGRAM p\nVAR n : INT; END_VAR\n  LD 1\n  DIV n\nEND_PROGRAM\n");
+    ASSERT_TRUE(program);
+    SoftPlcSetup setup;
+    setup.slice_intervals = {0ns};
+    setup.cycles.push_back(
+        {"divides", cycle("", 1ms, {}, 0, {}).config, {}, std::make_unique<IlCycle>(*program)});
+    setup.observer = &recorder;
+    plc = SoftPlc::make(std::move(setup), now).value();
+    ASSERT_TRUE(plc->order_run(StartKind::cold));
+    one_thread ? run_until(*plc, now, now + 5ms) : run_cycles_until(now + 5ms);
+    const auto faults = taken(0, EventKind::fault);
+    ASSERT_EQ(faults.size(), 1U);
+    EXPECT_EQ(faults[0].code, static_cast<std::uint16_t>(FaultCode::program_failed));
+    EXPECT_EQ(faults[0].values[2], 4) << "line";
+    EXPECT_EQ(faults[0].values[3], 3) << "column";
+  }
 }
 
 }  // namespace
