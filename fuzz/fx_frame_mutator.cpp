@@ -75,7 +75,11 @@ unsigned Mutation::any_address(bool is_bit) {
   return is_bit ? 8 * byte + static_cast<unsigned>(below(8)) : byte;
 }
 
-unsigned Mutation::any_count() { return one_in(4) ? static_cast<unsigned>(below(0x100)) : one_of(counts); }
+/// Small more often than not: what a run costs goes with the bytes.
+unsigned Mutation::any_count() {
+  if (one_in(2)) return static_cast<unsigned>(below(8)) + 1;
+  return one_in(4) ? static_cast<unsigned>(below(0x100)) : one_of(counts);
+}
 
 std::string Mutation::address_text(bool is_bit) {
   const unsigned address = any_address(is_bit);

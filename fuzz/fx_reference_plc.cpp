@@ -1,7 +1,7 @@
 #include "fuzz/fx_reference_plc.hpp"
 
 #include <bit>
-#include <span>
+#include <cstring>
 
 namespace fuzz {
 
@@ -19,6 +19,18 @@ constexpr unsigned bad_format = 6204;
 constexpr unsigned bad_command = 6205;
 
 }  // namespace
+
+std::size_t ones_in(std::span<const std::byte> bytes) noexcept {
+  std::size_t count = 0;
+  for (; bytes.size() >= sizeof(std::uint64_t); bytes = bytes.subspan(sizeof(std::uint64_t))) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, bytes.data(), sizeof eight);
+    count += static_cast<std::size_t>(std::popcount(eight));
+  }
+  for (const std::byte byte : bytes)
+    count += static_cast<std::size_t>(std::popcount(std::to_integer<unsigned>(byte)));
+  return count;
+}
 
 /// So many devices of a kind from an address on.
 struct ReferencePlc::Row {
@@ -213,12 +225,6 @@ void ReferencePlc::clear(Kind kind, unsigned first, unsigned end) {
 
 void ReferencePlc::toggle_input(unsigned index) noexcept {
   inputs_[index / 8 % inputs_.size()] ^= static_cast<std::uint8_t>(1U << (index % 8));
-}
-
-std::size_t ReferencePlc::ones_count() const noexcept {
-  std::size_t count = 0;
-  for (const std::uint8_t byte : bytes_) count += static_cast<std::size_t>(std::popcount(byte));
-  return count;
 }
 
 }  // namespace fuzz

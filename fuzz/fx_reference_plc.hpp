@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,9 @@
 #include "protocol/fx/address_map.hpp"
 
 namespace fuzz {
+
+/// Bits that are on.
+[[nodiscard]] std::size_t ones_in(std::span<const std::byte> bytes) noexcept;
 
 class ReferencePlc {
  public:
@@ -40,7 +44,7 @@ class ReferencePlc {
 
   [[nodiscard]] const Points& terminal_outputs() const noexcept { return outputs_; }
   /// Ones in the whole memory: what was written where nobody looks shows here.
-  [[nodiscard]] std::size_t ones_count() const noexcept;
+  [[nodiscard]] std::size_t ones_count() const noexcept { return ones_in(std::as_bytes(std::span{bytes_})); }
 
  private:
   enum Kind : std::uint8_t {

@@ -81,11 +81,8 @@ class PlcPair {
 
   /// The whole memory holds as many ones as that of the reference.
   void compare_memories() {
-    const auto memory = emulator_.lock();
-    std::size_t ones = 0;
-    for (const std::byte byte : memory->bytes())
-      ones += static_cast<std::size_t>(std::popcount(std::to_integer<unsigned>(byte)));
-    ltsim::expect(ones == reference_.ones_count(), "a PLC changes what its tables say, and nothing else");
+    ltsim::expect(fuzz::ones_in(emulator_.lock()->bytes()) == reference_.ones_count(),
+                  "a PLC changes what its tables say, and nothing else");
   }
 
  private:
