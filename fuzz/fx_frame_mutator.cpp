@@ -26,7 +26,7 @@ class Mutation {
   }
 
   /// The engine's own way.
-  std::string plain(const std::string& text) {
+  std::string changed_plainly(const std::string& text) {
     std::array<std::byte, 1200> bytes;
     const std::size_t size = std::min(text.size(), bytes.size() / 2);
     std::transform(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size), bytes.begin(),
@@ -42,7 +42,7 @@ class Mutation {
   std::string any_frame() { return closed(any_payload()); }
   std::string changed_frame(const std::string& frame) {
     const bool is_framed = frame.size() >= 4 && frame.front() == stx && frame[frame.size() - 3] == etx;
-    if (!is_framed || one_in(16)) return plain(frame);
+    if (!is_framed || one_in(16)) return changed_plainly(frame);
     return closed(changed_payload(frame.substr(1, frame.size() - 4)));
   }
 
@@ -118,7 +118,7 @@ std::string letters_of(std::string_view payload) {
 std::string Mutation::changed_payload(std::string payload) {
   const std::string letters = letters_of(payload);
   const std::size_t fixed_digits = letters.size() + (is_force(letters) ? 4 : 6);
-  if (letters.empty() || payload.size() < fixed_digits || one_in(4)) return plain(payload);
+  if (letters.empty() || payload.size() < fixed_digits || one_in(4)) return changed_plainly(payload);
   switch (below(4)) {
     case 0:
       return payload.replace(letters.size(), 4, address_text(is_force(letters)));
