@@ -1,6 +1,5 @@
 // The frames of the programming port, as they come: whatever the bytes, each decoder ends with a value or names the defect
-// that the tables name, and what it accepts has one encoding. The receiver has a target of its own (fx_port.cpp): with it,
-// half of the time would go there.
+// that the tables name, and what it accepts has one encoding. The receiver has a target of its own (fx_port.cpp).
 
 #include <algorithm>
 
@@ -20,16 +19,18 @@ std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-void decode_as_request(std::span<const std::byte> frame) {
+/// @return whether the envelope is whole: what begins with STX, ends with ETX and the right sum
+bool decode_as_request(std::span<const std::byte> frame) {
   const auto request = decode_request(frame);
   const auto defect = fuzz::reference_of_request(text_of(frame)).defect;
   ltsim::expect(request.has_value() != defect.has_value(), "a request decodes if the tables have it");
   if (!request) {
     ltsim::expect(request.error() == *defect, "the first defect of a request is the one that is named");
-    return;
+    return *defect > FrameError::bad_checksum;
   }
   const FrameBytes again = encode(*request);
   ltsim::expect(are_equal(as_span(again), frame), "a request that decodes encodes to the same bytes");
+  return true;
 }
 
 void decode_as_reply(std::span<const std::byte> frame) {
@@ -47,6 +48,7 @@ void decode_as_reply(std::span<const std::byte> frame) {
 }  // namespace
 
 FUZZ_TARGET("fx-frame", {}, "bytes at the programming port: decoded as a request and as a reply") {
-  decode_as_request(input);
-  decode_as_reply(input);
+  // Most inputs have a wrong sum, and to work it out is most of what a run costs: that a reply is refused for it, too, is
+  // left to fx-round-trip.
+  if (decode_as_request(input)) decode_as_reply(input);
 }
