@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <thread>
 
 #include "fuzz/hostile_peer.hpp"
 #include "protocol/shared_memory_port.hpp"
@@ -79,7 +80,11 @@ FUZZ_SCENARIO("hostile-master",
     MeasuringObserver observer{world, layout};
     protocol::SharedMemoryPort port{fuzz::segment, options, &observer};
     world.require(port.open().has_value(), "the segment can be opened");
-    for (std::size_t i = 0; i < requests; ++i) exchange_once(world, port);
+    for (std::size_t i = 0; i < requests; ++i) {
+      exchange_once(world, port);
+      // What is loaded from here on is of another exchange, also where nothing was sent or waited for.
+      std::this_thread::sleep_for(1ms);
+    }
   });
   world.run();
 }
