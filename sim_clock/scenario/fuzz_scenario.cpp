@@ -1,5 +1,8 @@
 #include "sim_clock/scenario/fuzz_scenario.hpp"
 
+#include <algorithm>
+#include <array>
+#include <csignal>
 #include <optional>
 #include <string>
 
@@ -13,6 +16,31 @@
 
 namespace ltsim {
 namespace {
+
+/// The engine's own answers to being stopped: what they call must not be the simulated calls of a task that runs just then.
+class StopSignals {
+ public:
+  StopSignals() {
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      sigaction(signals[i], nullptr, &engines_[i]);
+      if ((engines_[i].sa_flags & SA_SIGINFO) == 0) continue;  // nobody has one
+      struct sigaction action = engines_[i];
+      action.sa_sigaction = &pass_on;
+      sigaction(signals[i], &action, nullptr);
+    }
+  }
+
+ private:
+  static constexpr std::array signals{SIGINT, SIGTERM, SIGXCPU};
+
+  static void pass_on(int signal, siginfo_t* details, void* context) {
+    const GhostScope ghost;
+    const auto index = std::ranges::find(signals, signal) - signals.begin();
+    engines_[static_cast<std::size_t>(index)].sa_sigaction(signal, details, context);
+  }
+
+  inline static std::array<struct sigaction, signals.size()> engines_{};
+};
 
 /// The one world of a fuzz program, and what it runs.
 struct Fuzzing {
@@ -82,6 +110,7 @@ void mark_fuzzed_states_in(std::span<std::uint8_t> marks) { fuzzing().world.cove
 
 void run_fuzz_scenario(const Scenario& own, std::span<const std::byte> bytes) {
   Fuzzing& it = fuzzing();
+  static const StopSignals stop_signals;
   if (!it.signals) it.signals.emplace();
   it.strategy.set_bytes(bytes);
   std::string failure;
