@@ -5,14 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
+#include <span>
 
-#include <unistd.h>
-
-#include "fuzz/schedule_input.hpp"
+#include "fuzz/engine_arguments.hpp"
 #include "sim_clock/scenario/fuzz_target.hpp"
 
 extern "C" {
@@ -20,6 +15,9 @@ int LLVMFuzzerInitialize(int* argc, char*** argv);
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t size_max,
                                     unsigned seed);
+std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1, const std::uint8_t* data2,
+                                      std::size_t size2, std::uint8_t* out, std::size_t size_max,
+                                      unsigned seed);
 // Of the engine. Weak: one that never calls the mutator need not have it.
 [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t size_max);
 }
@@ -37,20 +35,12 @@ std::size_t mutate_as_engine(std::span<std::byte> data, std::size_t size) {
 
 }  // namespace
 
-// A schedule on the command line stands for the input in it: the engine gets that in a file of its own.
 int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  for (int i = 1; i < *argc; ++i) {
-    const std::filesystem::path path = (*argv)[i];
-    if (path.extension() != ".schedule") continue;
-    std::ifstream file{path, std::ios::binary};
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    const auto input = fuzz::input_of(text);
-    if (!input) continue;
-    static std::string name;
-    name = std::filesystem::temp_directory_path() / ("fuzz-input-" + std::to_string(getpid()));
-    std::ofstream{name, std::ios::binary} << *input;
-    (*argv)[i] = name.data();
-    std::atexit([] { std::filesystem::remove(name); });
+  const std::span arguments{*argv, static_cast<std::size_t>(*argc)};
+  if (target().needs_world()) {
+    fuzz::obey_scenario_arguments(target(), arguments);
+  } else {
+    fuzz::replace_schedules_by_inputs(arguments);
   }
   return 0;
 }
@@ -71,4 +61,15 @@ std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::s
   const std::span bytes{reinterpret_cast<std::byte*>(data), size_max};
   if (target().format.mutate == nullptr) return mutate_as_engine(bytes, size);
   return target().format.mutate(bytes, size, seed, mutate_as_engine);
+}
+
+// The engine asks for it as often as for all other changes together, and tries something else when there is nothing.
+std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1, const std::uint8_t* data2,
+                                      std::size_t size2, std::uint8_t* out, std::size_t size_max,
+                                      unsigned seed) {
+  constexpr unsigned one_of = 4;
+  if (target().format.splice == nullptr || seed % one_of != 0) return 0;
+  return target().format.splice({reinterpret_cast<const std::byte*>(data1), size1},
+                                {reinterpret_cast<const std::byte*>(data2), size2},
+                                {reinterpret_cast<std::byte*>(out), size_max}, seed);
 }

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim_clock/check/race_detector.hpp"
@@ -25,6 +26,12 @@ class Coverage {
   /// Things that this execution was the first to show.
   [[nodiscard]] std::uint64_t new_in_execution() const noexcept { return new_count_; }
 
+  /// What is seen is marked in these bytes, too, by hash: a fuzzing engine looks there for what an input shows, and sets them
+  /// to zero before the next one. None at first.
+  /// @param marks  a power of two of them; they outlive this
+  void mark_in(std::span<std::uint8_t> marks) noexcept { marks_ = marks; }
+  [[nodiscard]] bool marks() const noexcept { return !marks_.empty(); }
+
   void reads_from(RaceDetector::LastWrite writer, const SharedAccess& reader) noexcept {
     const std::uint64_t wrote = std::uint64_t{writer.task} << 32U | writer.site;
     const std::uint64_t read = std::uint64_t{reader.task} << 32U | reader.site;
@@ -39,6 +46,7 @@ class Coverage {
 
   void see(std::uint64_t hash) noexcept {
     const std::uint64_t bit = ((hash ^ hash >> 32U) * 0x94d049bb133111ebU) >> (64 - table_bits);
+    if (!marks_.empty()) marks_[bit & (marks_.size() - 1)] = 1;
     std::uint64_t& word = seen_[bit / 64];
     const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
     if ((word & mask) != 0) return;
@@ -48,6 +56,7 @@ class Coverage {
 
   std::vector<std::uint64_t> seen_;
   std::uint64_t new_count_ = 0;
+  std::span<std::uint8_t> marks_;
 };
 
 }  // namespace ltsim

@@ -31,6 +31,7 @@ struct FuzzArguments {
   std::vector<std::string> targets;
   std::string source_folder = ".";
   std::string out_folder = "out";
+  std::string scenario;  ///< to steer in place of the target's own; empty: none
   double seconds = 60;
   unsigned jobs = 1;
 };
@@ -44,6 +45,13 @@ struct FuzzFolders {
   fs::path dictionary;  ///< need not exist
   fs::path options;     ///< need not exist
 };
+
+/// How the program of a target is called, up to where the engine's own arguments begin.
+std::string command_of(const FuzzArguments& arguments, const FuzzFolders& folders) {
+  std::string command = as_shell_word(folders.program.string());
+  if (!arguments.scenario.empty()) command += " --scenario=" + as_shell_word(arguments.scenario);
+  return command;
+}
 
 std::string read_file(const fs::path& path) {
   std::ifstream file{path, std::ios::binary};
@@ -65,7 +73,7 @@ fs::path build(const FuzzArguments& arguments, const FuzzTarget& target) {
         "{}: holds no CMakePresets.json; run \"ltsim fuzz\" in the project's folder, or say --source FOLDER",
         source.string())};
   }
-  const std::string preset = "fuzz";
+  const std::string preset = target.needs_world() ? "fuzz-world" : "fuzz";
   const std::string log = (fs::path{"build"} / (preset + ".log")).string();
   fmt::print("building fuzz-{} in build/{}\n", target.name, preset);
   const std::string command = fmt::format(
@@ -113,7 +121,7 @@ std::vector<fs::path> fuzz(const FuzzArguments& arguments, const FuzzFolders& fo
   fs::create_directories(folders.artifacts);
   std::string command = fmt::format(
       "{} {} {} -artifact_prefix={}/ -max_total_time={} -print_final_stats=1 -timeout=10{}",
-      as_shell_word(folders.program.string()), as_shell_word(folders.found.string()),
+      command_of(arguments, folders), as_shell_word(folders.found.string()),
       fs::exists(folders.seeds) ? as_shell_word(folders.seeds.string()) : "",
       as_shell_word(folders.artifacts.string()), static_cast<unsigned long>(std::max(1.0, arguments.seconds)),
       engine_options(folders.options));
@@ -142,7 +150,19 @@ std::string engine_verdict(const FuzzFolders& folders, const fs::path& input) {
   return "the engine stopped";
 }
 
-Schedule schedule_of(const FuzzTarget& target, const FuzzFolders& folders, const fs::path& input) {
+/// The program itself says what the bytes choose: they count decisions, and this program may have others.
+Schedule recorded_schedule(const FuzzArguments& arguments, const FuzzFolders& folders,
+                           const fs::path& input) {
+  const fs::path path = folders.artifacts.string() + ".schedule";
+  const std::string command = fmt::format("{} --schedule={} {}", command_of(arguments, folders),
+                                          as_shell_word(path.string()), as_shell_word(input.string()));
+  if (run(command) != 0) throw UsageError{fmt::format("no schedule could be recorded: {}", command)};
+  return read_schedule(path.string());
+}
+
+Schedule schedule_of(const FuzzArguments& arguments, const FuzzTarget& target, const FuzzFolders& folders,
+                     const fs::path& input) {
+  if (target.needs_world()) return recorded_schedule(arguments, folders, input);
   Schedule schedule;
   schedule.scenario = "fuzz/" + std::string{target.name};
   const std::string bytes = read_file(input);
@@ -162,11 +182,13 @@ Schedule schedule_of(const FuzzTarget& target, const FuzzFolders& folders, const
       .schedule;
 }
 
-void tell(const Schedule& schedule, const FuzzFolders& folders, const fs::path& path,
-          std::string_view program) {
+void tell(const FuzzTarget& target, const Schedule& schedule, const FuzzFolders& folders,
+          const fs::path& path, std::string_view program) {
   fmt::print("\n{}  {}: {}\n", schedule.scenario, to_string(schedule.outcome), schedule.message);
   for (const std::string& line : input_lines(schedule)) fmt::print("    {}\n", line);
+  for (const Deviation& line : schedule.deviations) fmt::print("    {}\n", to_string(line));
   fmt::print("  replay:  {} replay {}\n", as_shell_word(std::string{program}), as_shell_word(path.string()));
+  if (target.needs_world()) return;
   fmt::print("  with sanitizers:  {} {}\n", as_shell_word(folders.program.string()),
              as_shell_word(path.string()));
 }
@@ -179,9 +201,9 @@ std::size_t fuzz_target(const FuzzArguments& arguments, const FuzzTarget& target
     const fs::path path =
         fs::path{arguments.out_folder} /
         fmt::format("fuzz-{}{}.schedule", target.name, i == 0 ? "" : fmt::format("-{}", i + 1));
-    const Schedule schedule = schedule_of(target, folders, failed[i]);
+    const Schedule schedule = schedule_of(arguments, target, folders, failed[i]);
     write_asked_for_file(path, to_string(schedule));
-    tell(schedule, folders, path, program);
+    tell(target, schedule, folders, path, program);
   }
   return failed.size();
 }
@@ -197,6 +219,9 @@ int fuzz_all(const FuzzArguments& arguments, std::string_view program) {
           fmt::format("there is no fuzz target \"{}\"; there are: {}", name, fmt::join(known, ", "))};
     }
   }
+  const auto cannot_steer = [](const FuzzTarget* target) { return !target->needs_world(); };
+  if (!arguments.scenario.empty() && std::ranges::any_of(chosen, cannot_steer))
+    throw UsageError{"--scenario is for targets whose bytes are the choices of a scenario"};
   std::size_t failed = 0;
   for (const FuzzTarget* const target : chosen) {
     const std::size_t of_target = fuzz_target(arguments, *target, program);
@@ -220,6 +245,8 @@ void add_fuzz_command(CLI::App& app, Command& chosen) {
   command->add_option("--jobs", arguments->jobs, "processes of the engine")
       ->capture_default_str()
       ->check(CLI::Range(1U, 64U));
+  command->add_option("--scenario", arguments->scenario,
+                      "for a target whose bytes are choices: steer this scenario of its program instead");
   command->add_option("--source", arguments->source_folder, "the project's folder, with CMakePresets.json")
       ->capture_default_str();
   command->add_option("--out", arguments->out_folder, "folder for schedules, and for what the engine found")

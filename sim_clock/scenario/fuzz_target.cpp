@@ -37,14 +37,18 @@ const FuzzTarget* find_fuzz_target(std::string_view name) {
 
 FuzzTargetRegistration::FuzzTargetRegistration(std::string_view name, const InputFormat& format,
                                                std::string_view description,
-                                               void (*run)(std::span<const std::byte> input)) {
+                                               void (*run)(std::span<const std::byte> input),
+                                               const FuzzedScenario& scenario) {
   auto& all = registry();
   const auto place = std::ranges::lower_bound(all, name, {}, &FuzzTarget::name);
   if (place != all.end() && place->name == name) {
     std::fprintf(stderr, "two fuzz targets are called %.*s\n", static_cast<int>(name.size()), name.data());
     std::exit(2);
   }
-  all.insert(place, FuzzTarget{.name = name, .description = description, .format = format, .run = run});
+  all.insert(
+      place,
+      FuzzTarget{
+          .name = name, .description = description, .format = format, .run = run, .scenario = scenario});
 }
 
 }  // namespace ltsim

@@ -51,6 +51,25 @@ struct InputFormat {
   /// @return       the new size, at most data.size()
   std::size_t (*mutate)(std::span<std::byte> data, std::size_t size, unsigned seed,
                         PlainMutator plain) = nullptr;
+  /// Makes a new input of two; null: the engine's own way.
+  /// @return the bytes of `into` that are the new one; 0: none was made
+  std::size_t (*splice)(std::span<const std::byte> one, std::span<const std::byte> other,
+                        std::span<std::byte> into, unsigned seed) = nullptr;
+};
+
+struct FuzzTarget;
+struct Schedule;
+
+/// What a target has besides where its bytes are the choices of a scenario (fuzz_scenario.hpp).
+struct FuzzedScenario {
+  /// Steers the scenario of that name from now on, in place of the target's own.
+  /// @return whether this program has it
+  bool (*steer)(std::string_view scenario) = nullptr;
+  /// @return the choices that the bytes made, as a small schedule with its outcome
+  Schedule (*record)(const FuzzTarget& target, std::span<const std::byte> input) = nullptr;
+  /// @throw BrokenPromise unless the outcome is `passed`
+  /// @return what no longer fits of the schedule; empty if all does
+  std::string (*replay)(const Schedule& schedule) = nullptr;
 };
 
 struct FuzzTarget {
@@ -59,7 +78,10 @@ struct FuzzTarget {
   std::string_view description;
   InputFormat format;
   void (*run)(std::span<const std::byte> input);
+  FuzzedScenario scenario = {};
 
+  /// Whether it needs the simulated world: the bytes are choices.
+  [[nodiscard]] bool needs_world() const noexcept { return scenario.replay != nullptr; }
   /// The records of an input; without a format of its own it is cut behind each end of a line.
   [[nodiscard]] std::vector<std::string_view> records(std::string_view input) const;
 };
@@ -75,7 +97,7 @@ struct FuzzTarget {
 /// Adds a target before main(). A name given twice ends the program with exit code 2.
 struct FuzzTargetRegistration {
   FuzzTargetRegistration(std::string_view name, const InputFormat& format, std::string_view description,
-                         void (*run)(std::span<const std::byte> input));
+                         void (*run)(std::span<const std::byte> input), const FuzzedScenario& scenario = {});
 };
 
 }  // namespace ltsim

@@ -71,6 +71,7 @@ void ExchangeMonitor::submitted(std::span<const std::byte> request) noexcept {
                                 .tasks_count = world_.scheduler().tasks_count()});
   ownership_.enters(running().id, Use::writes_request);
   world_.note([&] { return fmt::format("SUBMIT {}: {}", exchanges_.size(), hex(request)); });
+  tell_state(MasterStep::submitted);
 }
 
 void ExchangeMonitor::published() noexcept {
@@ -81,6 +82,7 @@ void ExchangeMonitor::published() noexcept {
   exchanges_[own].published = true;
   exchanges_[own].taken = false;
   exchanges_[own].sender_waits = true;
+  tell_state(MasterStep::waits);
   state_word_.publish_request();
   check_state_word();
 }
@@ -90,6 +92,7 @@ void ExchangeMonitor::taken() noexcept {
   ownership_.enters(running().id, Use::reads_request);
   ++taken_count_;
   for (Exchange& exchange : exchanges_) exchange.taken = exchange.published;
+  tell_state(SlaveStep::taken);
   if (served_ && serving_ != running().process) {
     violated({"I28"}, [&] {
       return fmt::format("{} and {} serve the same kernel", world_.process_name(serving_),
@@ -106,12 +109,12 @@ void ExchangeMonitor::executed(std::span<const std::byte> request) noexcept {
   const std::string_view token_only = taken_count_ > published_count_ ? "I11" : "";
   const auto found = std::ranges::find_if(
       exchanges_, [&](const Exchange& exchange) { return std::ranges::equal(request, exchange.request); });
+  executing_ = found == exchanges_.end() ? none : static_cast<std::size_t>(found - exchanges_.begin());
+  tell_state(SlaveStep::executes);
   if (found == exchanges_.end()) {
-    executing_ = none;
     return violated({"I3", token_only, reset_in_use_ ? "I29" : ""},
                     [&] { return fmt::format("{} was executed, which nobody submitted", hex(request)); });
   }
-  executing_ = static_cast<std::size_t>(found - exchanges_.begin());
   const std::size_t number = executing_ + 1;
   ++found->executed_count;
   if (found->not_executed) {
@@ -131,10 +134,12 @@ void ExchangeMonitor::answered(std::span<const std::byte> response) noexcept {
   } else {
     exchanges_[executing_].answer.assign(response.begin(), response.end());
   }
+  tell_state(SlaveStep::answers);
 }
 
 void ExchangeMonitor::announced() noexcept {
   unread_ = executing_;
+  tell_state(SlaveStep::waits);
   state_word_.publish_response();
   check_state_word();
 }
@@ -142,6 +147,7 @@ void ExchangeMonitor::announced() noexcept {
 void ExchangeMonitor::accepted() noexcept {
   ownership_.enters(running().id, Use::reads_response);
   unread_ = none;
+  tell_state(MasterStep::reads);
 }
 
 void ExchangeMonitor::delivered(std::span<const std::byte> response) noexcept {
@@ -204,6 +210,7 @@ void ExchangeMonitor::ended(protocol::ExchangeOutcome outcome) noexcept {
   Exchange& last = exchanges_.back();
   world_.note([&] { return fmt::format("OUTCOME {}: {}", exchanges_.size(), to_string(outcome)); });
   if (last.task == running().id) last.sender_waits = false;
+  tell_state(MasterStep::at_rest);
   last.not_executed = outcome == protocol::ExchangeOutcome::not_executed;
   if (++last.ended_count > 1)
     violated({"I18"}, [&] { return fmt::format("request {} ended twice", exchanges_.size()); });
@@ -220,6 +227,36 @@ void ExchangeMonitor::check_at_end() {
   if (reset_in_use_)
     violated({"I29"}, [] { return std::string{"the segment was filled with zeros while it was in use"}; });
   if (ownership_.first_conflict()) violated({"I7"}, [&] { return *ownership_.first_conflict(); });
+}
+
+void ExchangeMonitor::tell_state(MasterStep step) {
+  master_step_ = step;
+  tell_state();
+}
+
+void ExchangeMonitor::tell_state(SlaveStep step) {
+  slave_step_ = step;
+  tell_state();
+}
+
+void ExchangeMonitor::tell_state() {
+  if (!world_.coverage().marks()) return;
+  constexpr std::size_t digit_max = 15;
+  std::uint64_t state = 0;
+  const auto add = [&](std::size_t digit) { state = state << 4U | std::min(digit, digit_max); };
+  add(static_cast<std::size_t>(master_step_));
+  add(static_cast<std::size_t>(slave_step_));
+  add(exchanges_.size());
+  add(executing_ == none ? digit_max : exchanges_.size() - executing_);  // how far the emulator is behind
+  add(unread_ == none ? digit_max : exchanges_.size() - unread_);
+  add(published_count_ - std::min(published_count_, taken_count_));
+  if (!exchanges_.empty()) {
+    const Exchange& last = exchanges_.back();
+    add(last.executed_count);
+    add(last.delivered_count);
+    add((last.sender_waits ? 1U : 0U) + (state_word_.says_response() ? 2U : 0U));
+  }
+  world_.abstract_state(state);
 }
 
 void ExchangeMonitor::check_state_word() {

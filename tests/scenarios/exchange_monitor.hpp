@@ -91,6 +91,13 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   };
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
+  enum class MasterStep : std::uint8_t { at_rest, submitted, waits, reads };
+  enum class SlaveStep : std::uint8_t { waits, taken, executes, answers };
+
+  /// Tells a fuzzing engine where both sides are. Nobody else: a seed of an exploration is to mean what it meant.
+  void tell_state(MasterStep step);
+  void tell_state(SlaveStep step);
+  void tell_state();
   void check_when_idle();
   void check_state_word();
   void check_delivered(std::span<const std::byte> response, bool wiped_another);
@@ -118,7 +125,9 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   std::size_t taken_count_ = 0;
   std::size_t executing_ = none;  // index
   std::size_t unread_ = none;     // index; its answer was announced, and nobody has turned to it yet
-  bool reset_in_use_ = false;     // the segment was filled with zeros after a request was published
+  MasterStep master_step_ = MasterStep::at_rest;
+  SlaveStep slave_step_ = SlaveStep::waits;
+  bool reset_in_use_ = false;  // the segment was filled with zeros after a request was published
 };
 
 }  // namespace scenarios

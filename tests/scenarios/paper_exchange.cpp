@@ -32,8 +32,9 @@ class MirrorPlc final : public emulator_models::IPlcEmulator {
 
 /// Request 1 is 11 12 13, request 2 is 21 22, request 3 is 31 32 33 ... up to 7: no part of one is a part of
 /// another, and two in a row differ in length.
-std::span<const std::byte> request_bytes(unsigned number, std::span<std::byte, 3> into) {
-  const std::size_t length = number % 2 == 1 ? 3 : 2;
+/// @param length  0: this one
+std::span<const std::byte> request_bytes(unsigned number, std::size_t length, std::span<std::byte, 8> into) {
+  if (length == 0) length = number % 2 == 1 ? 3 : 2;
   for (unsigned i = 0; i < length; ++i) into[i] = static_cast<std::byte>(number << 4U | (i + 1));
   return into.first(length);
 }
@@ -53,7 +54,10 @@ PaperOptions options_of(const PaperExchange& exchange) {
 class Sides {
  public:
   Sides(ltsim::World& world, const PaperExchange& exchange)
-      : exchange_{exchange}, options_{options_of(exchange)}, monitor_{world, options_, exchange.monitor} {
+      : world_{world},
+        exchange_{exchange},
+        options_{options_of(exchange)},
+        monitor_{world, options_, exchange.monitor} {
     if (exchange.emulator_is_late) emulator_delay_ = 50ms * world.choose("delay", 9);
   }
 
@@ -101,9 +105,10 @@ class Sides {
  private:
   void send_requests(protocol::SharedMemoryPort& port) {
     for (unsigned i = 0; i < exchange_.requests; ++i) {
-      std::byte request[3];
+      std::byte request[8];
       std::byte answer[8];
-      if (!port.write(request_bytes(next_request_++, request)) || !port.read(answer)) return;
+      const std::size_t length = exchange_.lengths_are_asked ? world_.choose("length", 9) : 0;
+      if (!port.write(request_bytes(next_request_++, length, request)) || !port.read(answer)) return;
       if (!exchange_.reads_twice) continue;
       port.set_timeouts({.read = 0ns});
       if (!port.read(answer)) return;
@@ -111,6 +116,7 @@ class Sides {
     }
   }
 
+  ltsim::World& world_;
   const PaperExchange& exchange_;
   PaperOptions options_;
   ExchangeMonitor monitor_;
@@ -127,6 +133,7 @@ class Sides {
 PaperExchange inside_envelope(const PaperExchange& exchange) {
   PaperExchange sound{.requests = exchange.requests,
                       .reads_twice = exchange.reads_twice,
+                      .lengths_are_asked = exchange.lengths_are_asked,
                       .emulator_is_late = exchange.emulator_is_late,
                       .monitor = exchange.monitor};
   if (sound.reads_twice) {

@@ -23,6 +23,7 @@ struct PaperExchange {
   unsigned kernel_threads = 1;           ///< K11: on one port
   unsigned emulators = 1;                ///< K11: on one segment, at most 2
   bool reads_twice = false;              ///< after each answer the kernel looks whether there is more
+  bool lengths_are_asked = false;        ///< World::choose() says how many bytes each request has, up to 8
   bool emulator_is_late = false;         ///< it is started up to 400 ms after the kernel
   Killed killed = Killed::nobody;        ///< at most once, at any step, and started again 5 ms later
   ExchangeMonitor::Options monitor = {};
