@@ -159,8 +159,9 @@ std::vector<std::string> input_lines(const Schedule& schedule) {
 }
 
 std::string one_line(std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return message;
+  std::replace_if(message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  // Blanks before it would be taken for those of the line.
+  return message.substr(std::min(message.find_first_not_of(' '), message.size()));
 }
 
 std::string to_string(const Schedule& schedule) {

@@ -1,0 +1,146 @@
+// Every strategy: each choice that there is can be made, and an execution written down is the same when it is replayed.
+
+#include <fcntl.h>
+#include <semaphore.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "property_tests/sim_clock/small_program.hpp"
+#include "property_tests/support/property.hpp"
+#include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/strategies.hpp"
+
+namespace property_tests {
+namespace {
+
+using namespace ltsim;
+using namespace std::chrono_literals;
+
+/// Explores a scenario until it has ended in as many ways as there are, or for 30,000 executions.
+/// @param seen  the ways, each execution adds its own
+/// @return      whether all were seen
+bool sees_all(const Scenario& scenario, const std::string& strategy_name, const std::set<std::string>& seen,
+              std::size_t possible) {
+  constexpr std::uint64_t explorations_max = 100;
+  const auto strategy = make_strategy(strategy_name);
+  ExploreOptions options;
+  options.executions_max = 300;
+  for (options.seed = 1; options.seed <= explorations_max && seen.size() < possible; ++options.seed)
+    static_cast<void>(Explorer{world()}.explore(scenario, *strategy, options));
+  RC_LOG() << seen.size() << " of " << possible << " seen\n";
+  return seen.size() == possible;
+}
+
+/// (a + b + ...)! / (a! b! ...)
+std::size_t interleavings(const std::vector<int>& steps) {
+  std::size_t count = 1;
+  std::size_t total = 0;
+  for (const int of_task : steps) {
+    for (int i = 1; i <= of_task; ++i) count = count * ++total / static_cast<std::size_t>(i);
+  }
+  return count;
+}
+
+PROPERTY(Strategies, reach_every_interleaving_of_a_small_program, ()) {
+  const auto steps = *rc::gen::suchThat(
+      rc::gen::mapcat(rc::gen::inRange<std::size_t>(2, 4),
+                      [](std::size_t tasks) {
+                        return rc::gen::container<std::vector<int>>(tasks, rc::gen::inRange(1, 4));
+                      }),
+      [](const std::vector<int>& of_tasks) { return interleavings(of_tasks) <= 20; });
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  std::set<std::string> orders;
+  std::string order;
+  const Scenario scenario{"property/interleavings", "", [&](World& of_run) {
+                            order.clear();
+                            const auto word = std::make_shared<std::atomic<int>>(0);
+                            for (std::size_t task = 0; task < steps.size(); ++task) {
+                              of_run.process("p").start(std::to_string(task), [&order, &steps, word, task] {
+                                for (int i = 0; i < steps[task]; ++i) {
+                                  *word = i;
+                                  order += static_cast<char>('0' + task);
+                                }
+                              });
+                            }
+                            of_run.run();
+                            orders.insert(order);
+                          }};
+  RC_ASSERT(sees_all(scenario, name, orders, interleavings(steps)));
+}
+
+PROPERTY(Strategies, give_every_answer, ()) {
+  const auto answers = *rc::gen::inRange<std::size_t>(2, 12);
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  std::set<std::string> given;
+  const Scenario scenario{"property/answers", "", [&](World& of_run) {
+                            given.insert(std::to_string(of_run.choose("answer", answers)));
+                            of_run.run();
+                          }};
+  RC_ASSERT(sees_all(scenario, name, given, answers));
+}
+
+PROPERTY(Strategies, let_a_fault_strike_at_each_place_and_at_none, ()) {
+  const auto posts = *rc::gen::inRange<std::size_t>(1, 5);
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  std::set<std::string> all_lost;
+  std::string lost;
+  const Scenario scenario{"property/faults", "", [&](World& of_run) {
+                            lost = "none";
+                            of_run.grant(FaultKind::lost_post, 1);
+                            of_run.process("p").start("main", [&lost, posts] {
+                              sem_t* const bell = sem_open("/bell", O_CREAT, 0600, 0);
+                              for (std::size_t i = 0; i < posts; ++i) {
+                                sem_post(bell);
+                                if (sem_trywait(bell) != 0) lost = std::to_string(i);
+                              }
+                            });
+                            of_run.run();
+                            all_lost.insert(lost);
+                          }};
+  RC_ASSERT(sees_all(scenario, name, all_lost, posts + 1));
+}
+
+PROPERTY(Strategies, let_a_time_out_fire_before_and_after_what_it_waits_for, ()) {
+  const std::chrono::milliseconds limit{*rc::gen::inRange(1, 50)};
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  std::set<std::string> seen;
+  const Scenario scenario{"property/time-out", "", [&](World& of_run) {
+                            const auto done = std::make_shared<std::atomic<bool>>(false);
+                            of_run.process("p").start("worker", [done] { *done = true; });
+                            of_run.process("p").start("waiter", [&seen, done, limit] {
+                              std::this_thread::sleep_for(limit);
+                              seen.insert(*done ? "done" : "late");
+                            });
+                            of_run.run();
+                          }};
+  RC_ASSERT(sees_all(scenario, name, seen, 2));
+}
+
+PROPERTY(Strategies, record_what_replays_with_the_same_trace, ()) {
+  using enum Step::Kind;
+  const SmallProgram program = *any_small_program({add, count, wait, post, sleep, time_out, ask});
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  const Scenario scenario = scenario_of(program);
+  const auto strategy = make_strategy(name);
+  Explorer explorer{world()};
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    const Failure recorded =
+        explorer.record(scenario, *strategy, Explorer::seed_of(*rc::gen::arbitrary<unsigned>(), i));
+    strategy->learn({});
+    const auto schedule = parse_schedule(to_string(recorded.schedule));
+    if (!schedule) RC_FAIL(schedule.error().reason);
+    const ReplayReport replayed = explorer.replay(scenario, *schedule, nullptr);
+    RC_ASSERT(!replayed.divergence);
+    RC_ASSERT(replayed.trace_hash == recorded.trace_hash);
+    RC_ASSERT((replayed.outcome == recorded.outcome));
+    RC_ASSERT(replayed.at == recorded.at);
+  }
+}
+
+}  // namespace
+}  // namespace property_tests
