@@ -63,6 +63,14 @@ TEST(Schedule, what_was_written_reads_back_equal) {
   EXPECT_EQ(again->message, schedule->message);
 }
 
+TEST(Schedule, carriage_returns_end_a_line_however_many_there_are) {
+  const auto schedule =
+      parse_schedule("ltsim schedule 1\r\r\nscenario a/b\r\r\noutcome invariant: late\r\r\n");
+  ASSERT_TRUE(schedule);
+  EXPECT_EQ(schedule->scenario, "a/b");
+  EXPECT_EQ(schedule->message, "late");
+}
+
 TEST(Schedule, an_input_is_written_and_read_record_by_record) {
   Schedule schedule;
   schedule.scenario = "fuzz/fx-frame";
