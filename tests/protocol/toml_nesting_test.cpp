@@ -27,7 +27,7 @@ TEST(TomlNesting, brackets_that_are_closed_do_not_count) {
 TEST(TomlNesting, each_part_of_a_dotted_key_is_a_table) {
   EXPECT_EQ(too_deep_nesting(times(toml_nesting_max - 1, "a.") + "a = 1"), std::nullopt);
   EXPECT_EQ(too_deep_nesting(times(toml_nesting_max, "a.") + "a = 1"), (TomlPlace{1, 16}));
-  EXPECT_EQ(too_deep_nesting("[" + times(toml_nesting_max, "a.") + "a]"), (TomlPlace{1, 17}));
+  EXPECT_EQ(too_deep_nesting(std::string{"["} + times(toml_nesting_max, "a.") + "a]"), (TomlPlace{1, 17}));
   EXPECT_EQ(too_deep_nesting(times(toml_nesting_max, "\"a\" . 'b.' . ") + "a = 1"), (TomlPlace{1, 50}));
 }
 
@@ -41,8 +41,8 @@ TEST(TomlNesting, strings_and_comments_do_not_nest) {
   for (const std::string& quoted :
        {"'" + deep + "'", "\"" + deep + "\\\"" + deep + "\"", "'''" + deep + "\n''" + deep + "'''''",
         "\"\"\"" + deep + "\n\\\"\"\"" + deep + "\"\"\"\"", "# " + deep, "\"\" # " + deep}) {
-    EXPECT_EQ(too_deep_nesting("a = " + quoted + "\n"), std::nullopt) << quoted;
-    EXPECT_NE(too_deep_nesting("a = " + quoted + "\nb = " + deep), std::nullopt) << quoted;
+    EXPECT_EQ(too_deep_nesting(std::string{"a = "} + quoted + "\n"), std::nullopt) << quoted;
+    EXPECT_NE(too_deep_nesting(std::string{"a = "} + quoted + "\nb = " + deep), std::nullopt) << quoted;
   }
 }
 
