@@ -125,12 +125,13 @@ void run(std::string_view text, const IlProgram& program) {
   }
 }
 
+/// But for the bytes of the variables: instances of function blocks have gaps, in which anything may stand.
 bool is_same(const IlProgram& one, const IlProgram& other) {
   const auto is_same_instruction = [](const Instruction& a, const Instruction& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
   };
   return std::ranges::equal(one.code, other.code, is_same_instruction) && one.places == other.places &&
-         one.constants == other.constants && one.initial_variables == other.initial_variables &&
+         one.constants == other.constants && one.initial_variables.size() == other.initial_variables.size() &&
          one.retained_bytes == other.retained_bytes && one.image_bytes_needed == other.image_bytes_needed &&
          one.warnings == other.warnings;
 }

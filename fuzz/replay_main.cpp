@@ -5,6 +5,7 @@
 // A file holds an input as it is, or is a schedule with "input" lines. A folder stands for all files in it. Exit code: 0 all
 // passed, 1 one failed, 2 a file cannot be read or there was none. A signal ends the run; the file is told before.
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <exception>

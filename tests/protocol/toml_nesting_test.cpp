@@ -27,8 +27,9 @@ TEST(TomlNesting, brackets_that_are_closed_do_not_count) {
 TEST(TomlNesting, each_part_of_a_dotted_key_is_a_table) {
   EXPECT_EQ(too_deep_nesting(times(toml_nesting_max - 1, "a.") + "a = 1"), std::nullopt);
   EXPECT_EQ(too_deep_nesting(times(toml_nesting_max, "a.") + "a = 1"), (TomlPlace{1, 16}));
-  EXPECT_EQ(too_deep_nesting(std::string{"["} + times(toml_nesting_max, "a.") + "a]"), (TomlPlace{1, 17}));
-  EXPECT_EQ(too_deep_nesting(times(toml_nesting_max, "\"a\" . 'b.' . ") + "a = 1"), (TomlPlace{1, 50}));
+  EXPECT_EQ(too_deep_nesting(std::string{"["}.append(times(toml_nesting_max, "a.")) + "a]"),
+            (TomlPlace{1, 17}));
+  EXPECT_EQ(too_deep_nesting(times(toml_nesting_max, "\"a\" . 'b.' . ") + "a = 1"), (TomlPlace{1, 51}));
 }
 
 TEST(TomlNesting, points_of_numbers_are_no_parts_of_a_key) {
