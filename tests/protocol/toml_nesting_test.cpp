@@ -37,6 +37,16 @@ TEST(TomlNesting, points_of_numbers_are_no_parts_of_a_key) {
             std::nullopt);
 }
 
+TEST(TomlNesting, the_value_is_not_counted_with_its_key) {
+  EXPECT_EQ(too_deep_nesting(times(toml_nesting_max - 1, "a.") + "a = 1.5"), std::nullopt);
+}
+
+TEST(TomlNesting, quotes_before_those_that_close_a_string_open_no_other) {
+  for (const char* quoted : {"\"\"\"a\"\"\"\"", "'''a''''", "\"\"\"a\"\"\"\"\""})
+    EXPECT_NE(too_deep_nesting(std::string{quoted} + times(toml_nesting_max + 1, "[")), std::nullopt)
+        << quoted;
+}
+
 TEST(TomlNesting, strings_and_comments_do_not_nest) {
   const std::string deep = times(50, "[a.b.c.d.");
   for (const std::string& quoted :
