@@ -7,7 +7,8 @@ namespace kernel_mocks {
 namespace {
 
 constexpr GTenths g0 = 0, g1 = 10, g2 = 20, g3 = 30, g4 = 40, g28 = 280, g30 = 300, g41 = 410, g42 = 420,
-                  g43 = 430, g53 = 530, g64 = 640, g80 = 800, g92 = 920, g93 = 930;
+                  g43 = 430, g53 = 530, g64 = 640, g80 = 800, g92 = 920, g92_1 = 921, g92_2 = 922,
+                  g92_3 = 923, g93 = 930;
 
 const LexedWord* first_of(std::span<const LexedWord> words, std::string_view letters) noexcept {
   const auto found = std::ranges::find_if(words, [letters](const LexedWord& word) {
@@ -105,6 +106,9 @@ std::optional<NcError> ModalRules::check_motion(const BlockFacts& facts, std::ui
   }
   if (is_g(facts.non_modal, g53) && motion_ != g0 && motion_ != g1) {
     return error_at(NcFault::machine_coordinates_without_line, line, *facts.non_modal);
+  }
+  if (is_g(facts.non_modal, g4, g92_1, g92_2, g92_3) && (facts.moves() || is_arc(facts))) {
+    return error_at(NcFault::motion_in_block_without, line, *facts.non_modal);
   }
   if (is_arc(facts) && (facts.radius != nullptr) == (facts.centre != nullptr)) {
     return error_at(NcFault::arc_without_centre, line, facts.motion_or_last());

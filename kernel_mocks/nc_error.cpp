@@ -65,6 +65,8 @@ std::string_view to_string(NcFault fault) noexcept {
       return "two G codes of the block claim its axis words";
     case NcFault::machine_coordinates_without_line:
       return "G53 needs G0 or G1";
+    case NcFault::motion_in_block_without:
+      return "G4 and G92.1 to G92.3 stand in a block that moves nothing";
     case NcFault::word_without_user:
       return "no G code of the block and no modal motion uses this word";
     case NcFault::dwell_without_time:

@@ -40,6 +40,7 @@ enum class NcFault : std::uint8_t {
   too_many_m_codes,
   two_users_of_axis_words,
   machine_coordinates_without_line,
+  motion_in_block_without,
   word_without_user,
   dwell_without_time,
   // blocks together

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "protocol/toml_nesting.hpp"
+
 namespace kernel_mocks {
 
 std::string to_string(const ConfigError& error) {
@@ -29,6 +31,11 @@ std::optional<ConfigError> check_keys(const toml::table& table,
 std::optional<ConfigError> for_each_row(
     std::string_view text, std::string_view name,
     const std::function<std::optional<ConfigError>(const toml::table& row)>& take) {
+  if (const auto place = protocol::too_deep_nesting(text)) {
+    return ConfigError{place->line, place->column,
+                       fmt::format("this nests deeper than {} levels; the file is tables of [[{}]]",
+                                   protocol::toml_nesting_max, name)};
+  }
   try {
     const toml::table root = toml::parse(text);
     if (auto error = check_keys(root, {name})) return error;

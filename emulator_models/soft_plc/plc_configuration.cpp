@@ -12,6 +12,7 @@
 #include "emulator_models/soft_plc/il_cycle.hpp"
 #include "emulator_models/soft_plc/signal_recorder.hpp"
 #include "emulator_models/soft_plc/toml_table.hpp"
+#include "protocol/toml_nesting.hpp"
 
 namespace emulator_models::soft_plc {
 namespace {
@@ -253,6 +254,9 @@ tl::expected<PlcConfiguration, std::string> parse_configuration(std::string_view
   if (text.size() > configuration_bytes_max)
     return tl::unexpected{fmt::format("{}:1:1: longer than {} bytes; a configuration is a few hundred lines",
                                       name, configuration_bytes_max)};
+  if (const auto place = protocol::too_deep_nesting(text))
+    return tl::unexpected{fmt::format("{}:{}:{}: this nests deeper than {} levels; no key here needs as many",
+                                      name, place->line, place->column, protocol::toml_nesting_max)};
   try {
     return Parser{folder, reader}.parse(toml::parse(text, name));
   } catch (const ConfigurationFailure& failure) {

@@ -187,7 +187,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     ++number;
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    while (line.ends_with('\r')) line.remove_suffix(1);
     const auto words = words_of(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     if (!header_seen) {

@@ -31,6 +31,13 @@ TEST(MachineTableFile, a_kind_that_this_kernel_has_not_is_refused_with_those_it_
       "line 4, column 19: 'synchronisation' is one of NO_SYNCH, MOS, MVS_SVS, MVS_SNS, MNS_SNS, MVS_SLM");
 }
 
+TEST(MachineTableFile, keys_within_keys_without_end_are_refused_and_do_not_overflow_the_stack) {
+  std::string keys;
+  for (int i = 0; i < 300'000; ++i) keys += "a.";
+  EXPECT_EQ(refusal(keys + "a = 1\n"),
+            "line 1, column 16: this nests deeper than 8 levels; the file is tables of [[function]]");
+}
+
 TEST(OperatorScriptFile, reads_times_and_blocks) {
   const auto script = parse_operator_script(
       "[[event]]\nat_ms = 5\npress = \"feed-hold\"\n[[event]]\nblock = 20\npress = \"reset\"\n");

@@ -188,6 +188,16 @@ TEST(NcRules, words_that_nothing_uses_are_refused) {
   EXPECT_EQ(refusal_of_block("G0 Z1 H1"), "line 2, word 'H1'" + no_user);
 }
 
+TEST(NcRules, a_dwell_and_the_end_of_an_offset_are_no_block_to_move_in) {
+  const std::string reason = ": G4 and G92.1 to G92.3 stand in a block that moves nothing";
+  EXPECT_EQ(refusal_of_block("G0 G4 P1 X5"), "line 2, word 'G4'" + reason);
+  EXPECT_EQ(refusal_of_block("G1 F100 X1\nG4 P1 X5"), "line 3, word 'G4'" + reason);
+  EXPECT_EQ(refusal_of_block("G1 F100 X1\nG92.1 X5"), "line 3, word 'G92.1'" + reason);
+  EXPECT_EQ(refusal_of_block("G2 F100 I1 G92.3"), "line 2, word 'G92.3'" + reason);
+  EXPECT_EQ(refusal_of_block("G1 F100 G4 P1"), "");
+  EXPECT_EQ(refusal_of_block("G0 X5\nG92.2"), "");
+}
+
 TEST(NcRules, a_dwell_needs_its_time) {
   const std::string reason = ": G4 needs its time in seconds in a P word, not negative";
   EXPECT_EQ(refusal_of_block("G4"), "line 2, word 'G4'" + reason);

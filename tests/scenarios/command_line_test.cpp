@@ -154,6 +154,47 @@ TEST_F(CommandLineTest, minimize_makes_small_what_was_recorded_in_full) {
   EXPECT_EQ(read("out/demo-parts-counter.schedule"), small);
 }
 
+TEST_F(CommandLineTest, an_input_that_fails_is_replayed_and_made_small_by_whole_records) {
+  write("words.schedule",
+        "ltsim schedule 1\nscenario fuzz/doomed-words\nmemory sc\n"
+        "outcome invariant: fire and powder are kept apart\n"
+        "input \"water\\n\"\ninput \"a fire\\n\"\ninput \"\\x00\\xff\\n\"\ninput \"powder and ball\"\n");
+  const Result replayed = shell(DOOMED_PROGRAM " replay words.schedule");
+  EXPECT_EQ(replayed.exit_code, 1) << replayed.output;
+  EXPECT_NE(replayed.output.find("fuzz/doomed-words  invariant: fire and powder are kept apart"),
+            std::string::npos)
+      << replayed.output;
+  EXPECT_EQ(replayed.output.find("not as recorded"), std::string::npos) << replayed.output;
+
+  const Result minimized = shell(DOOMED_PROGRAM " minimize words.schedule --out small.schedule");
+  EXPECT_EQ(minimized.exit_code, 1) << minimized.output;
+  EXPECT_NE(minimized.output.find("4 lines, minimized to 2 in "), std::string::npos) << minimized.output;
+  const std::string small = read("small.schedule");
+  EXPECT_TRUE(small.ends_with("\ninput     \"fire\"\ninput     \"powder\"\n")) << small;
+  EXPECT_EQ(shell(DOOMED_PROGRAM " replay small.schedule").exit_code, 1);
+}
+
+TEST_F(CommandLineTest, an_input_that_passes_says_that_it_is_not_as_recorded) {
+  write(
+      "words.schedule",
+      "ltsim schedule 1\nscenario fuzz/doomed-words\noutcome crash: AddressSanitizer: heap-buffer-overflow\n"
+      "input \"fire\\n\"\n");
+  const Result result = shell(DOOMED_PROGRAM " replay words.schedule");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("not as recorded: crash: AddressSanitizer"), std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("a sanitizer found that"), std::string::npos) << result.output;
+  EXPECT_EQ(shell(DOOMED_PROGRAM " minimize words.schedule").exit_code, 2);
+}
+
+TEST_F(CommandLineTest, each_fuzz_target_is_a_scenario) {
+  const Result result = ltsim("list");
+  for (const char* name : {"fuzz/fx-frame ", "fuzz/il-source ", "fuzz/machine-table ", "fuzz/nc-program ",
+                           "fuzz/operator-script ", "fuzz/plc-config ", "fuzz/schedule-file "}) {
+    EXPECT_NE(result.output.find(name), std::string::npos) << name << "\n" << result.output;
+  }
+}
+
 TEST_F(CommandLineTest, a_schedule_that_no_longer_fits_is_refused_by_line) {
   write("old.schedule",
         "ltsim schedule 1\nscenario paper/one-request\nmemory sc\noutcome passed\n"
@@ -181,18 +222,25 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
   const struct {
     const char* arguments;
     const char* message;
-  } cases[] = {{"", "subcommand"},
-               {"explore", "scenarios"},
-               {"explore paper/no-such", "there is no scenario \"paper/no-such\""},
-               {"explore paper/one-request --executions 0", "--executions"},
-               {"explore paper/one-request --strategy clever", "clever"},
-               {"explore paper/one-request --jobs 0", "--jobs"},
-               {"replay no-such-file", "no-such-file: cannot be read"},
-               {"minimize no-such-file", "no-such-file: cannot be read"},
-               {"minimize passes.schedule", "passes.schedule: does not fail as it says"},
-               {"explore paper/one-request --minimize-seconds -1", "--minimize-seconds"},
-               {"replay bad.schedule", "bad.schedule:3: \"swich\""},
-               {"replay foreign.schedule", "no/such"}};
+  } cases[] = {
+      {"", "subcommand"},
+      {"explore", "scenarios"},
+      {"explore paper/no-such", "there is no scenario \"paper/no-such\""},
+      {"explore paper/one-request --executions 0", "--executions"},
+      {"explore paper/one-request --strategy clever", "clever"},
+      {"explore paper/one-request --jobs 0", "--jobs"},
+      {"replay no-such-file", "no-such-file: cannot be read"},
+      {"minimize no-such-file", "no-such-file: cannot be read"},
+      {"minimize passes.schedule", "passes.schedule: does not fail as it says"},
+      {"explore paper/one-request --minimize-seconds -1", "--minimize-seconds"},
+      {"fuzz", "targets"},
+      {"fuzz no-such", "there is no fuzz target \"no-such\"; there are: fx-frame, "},
+      {"fuzz fx-frame --seconds 0", "--seconds"},
+      {"fuzz fx-frame --jobs 65", "--jobs"},
+      {"fuzz fx-frame --source nowhere",
+       "nowhere: holds no CMakePresets.json; run \"ltsim fuzz\" in the project's folder, or say --source"},
+      {"replay bad.schedule", "bad.schedule:3: \"swich\""},
+      {"replay foreign.schedule", "no/such"}};
   for (const auto& c : cases) {
     const Result result = ltsim(c.arguments);
     EXPECT_EQ(result.exit_code, 2) << c.arguments << "\n" << result.output;
@@ -203,7 +251,8 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
 TEST_F(CommandLineTest, every_program_shows_a_printable_help) {
   for (const char* command :
        {LTSIM_PROGRAM " --help", LTSIM_PROGRAM " explore --help", LTSIM_PROGRAM " replay --help",
-        LTSIM_PROGRAM " minimize --help", PLC_EMULATOR_PROGRAM " --help", CNC_KERNEL_PROGRAM " --help"}) {
+        LTSIM_PROGRAM " minimize --help", LTSIM_PROGRAM " fuzz --help", PLC_EMULATOR_PROGRAM " --help",
+        CNC_KERNEL_PROGRAM " --help"}) {
     const Result result = shell(command);
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_GT(result.output.size(), 100U) << command;

@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <csignal>
+#include <string_view>
 
+#include "sim_clock/scenario/fuzz_target.hpp"
 #include "sim_clock/scenario/scenario.hpp"
 
 namespace {
@@ -56,4 +58,11 @@ SCENARIO("doomed/calls-rand", "what is not simulated is called after a property 
   });
   world.run();
   world.require(answer % 2 != 0, "even");
+}
+
+FUZZ_TARGET("doomed-words", {}, "lines of text, of which two must not meet") {
+  const std::string_view text{reinterpret_cast<const char*>(input.data()), input.size()};
+  const bool meet =
+      text.find("fire") != std::string_view::npos && text.find("powder") != std::string_view::npos;
+  ltsim::expect(!meet, "fire and powder are kept apart");
 }

@@ -49,6 +49,13 @@ TEST(PlcConfiguration, what_is_left_out_has_its_default) {
   EXPECT_TRUE(parsed.archive.path.empty());
 }
 
+TEST(PlcConfiguration, keys_within_keys_without_end_are_refused_and_do_not_overflow_the_stack) {
+  std::string keys;
+  for (int i = 0; i < 300'000; ++i) keys += "a.";
+  EXPECT_EQ(refusal(good + keys + "a = 1\n"),
+            "dir/plc.toml:7:16: this nests deeper than 8 levels; no key here needs as many");
+}
+
 TEST(PlcConfiguration, each_mistake_is_refused_with_its_place_and_the_way_out) {
   EXPECT_EQ(
       refusal(good + "periode_ms = 1\n"),
