@@ -118,7 +118,7 @@ TEST(Schedule, a_message_of_several_lines_is_written_as_one) {
 TEST(Schedule, a_message_reads_back_as_one_line_holds_it) {
   for (const char* const message : {"  indented", "of a foreign system\r", "a\r\nb", "\n", " "}) {
     const Schedule schedule{
-        .scenario = "a/b", .outcome = OutcomeKind::crash, .message = message, .deviations = {}};
+        .scenario = "a/b", .outcome = OutcomeKind::crash, .message = message, .input = {}, .deviations = {}};
     const auto again = parse_schedule(to_string(schedule));
     ASSERT_TRUE(again) << again.error().reason;
     EXPECT_EQ(again->message, one_line(message)) << message;
