@@ -73,7 +73,7 @@ struct Schedule {
   OutcomeKind outcome = OutcomeKind::passed;
   std::string message;  ///< of the outcome; one line
   Cpu cpu = Cpu::many;
-  std::vector<std::string> input;  ///< records of World::input(); together they are it
+  std::vector<std::string> input = {};  ///< records of World::input(); together they are it
   std::vector<Deviation> deviations;
 };
 

@@ -129,11 +129,11 @@ TEST_F(MemoryWatchTest, a_change_on_purpose_is_accepted) {
 }
 
 TEST_F(MemoryWatchTest, an_exploration_with_an_unseen_change_ends_as_not_simulable) {
-  const Scenario scenario{
-      .name = "test/unseen", .description = "", .body = [](World& world) {
-        world.process("a").start("main", [] { write_unseen(static_cast<Memory*>(map_segment())->bytes[8]); });
-        world.run();
-      }};
+  const Scenario scenario{.name = "test/unseen", .description = "", .body = [](World& world) {
+                            world.process("a").start(
+                                "main", [] { write_unseen(static_cast<Memory*>(map_segment())->bytes[8]); });
+                            world.run();
+                          }};
   RandomStrategy strategy;
   ExploreOptions options;
   options.executions_max = 10;
