@@ -37,7 +37,7 @@ all_names() { awk '$0 !~ /^[-+#]/ && NF == 2 { print $1 }' "$list"; }
 
 # plant NAME: into the copy.
 plant() {
-  local file old new
+  local file
   file=$copy/$(field "$1" file)
   old=$(field "$1" old) new=$(field "$1" new) awk '
     { text = $0; sub(/^ +/, "", text) }

@@ -2,7 +2,7 @@
 //
 //   fuzz-fx-frame FILE|FOLDER...
 //
-// A file holds an input as it is, or is a schedule: its "input" lines are the input, and where the bytes are the choices of a
+// A file holds an input as it is, or, called *.schedule, a schedule: its "input" lines are the input, and where the bytes are the choices of a
 // scenario it is replayed. A choice that no longer fits there is told and is no failure: what was wrong at that place is often
 // mended by taking the place away, and the outcome says whether it is. A folder stands for all files in it. Exit code: 0 all
 // passed, 1 one failed, 2 a file cannot be read or there was none. A signal ends the run; the file is told before.
@@ -63,12 +63,13 @@ std::vector<fs::path> files_of(const fs::path& path) {
 bool run(const ltsim::FuzzTarget& target, const fs::path& file, const std::string& text) {
   file_under_way = file.string();
   try {
-    if (const auto schedule = ltsim::parse_schedule(text); schedule && target.needs_world()) {
+    const bool is_schedule = file.extension() == ".schedule";
+    if (const auto schedule = ltsim::parse_schedule(text); is_schedule && schedule && target.needs_world()) {
       const std::string unfit = target.scenario.replay(*schedule);
       if (!unfit.empty()) fmt::print("{}: passed, though this no longer fits: {}\n", file.string(), unfit);
       return true;
     }
-    const std::string input = fuzz::input_of(text).value_or(text);
+    const std::string input = is_schedule ? fuzz::input_of(text).value_or(text) : text;
     target.run(std::as_bytes(std::span{input}));
     return true;
   } catch (const std::exception& error) {
