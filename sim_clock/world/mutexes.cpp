@@ -267,7 +267,8 @@ std::string Mutexes::held_at_end() const {
   std::string text;
   for (const Lock& lock : locks_) {
     const Task* const owner = owner_of(lock.object);
-    if (owner == nullptr || owner->state == Task::State::killed) continue;  // who is killed cannot unlock
+    // Who is killed cannot unlock, and who was under way when the scenario had seen enough still might have.
+    if (owner == nullptr || owner->state != Task::State::finished) continue;
     text += fmt::format("{}{} is still held by {}, which has ended", text.empty() ? "" : "; ",
                         world_.objects().object_name(lock.object), owner->name);
   }

@@ -211,5 +211,20 @@ TEST_F(LifetimeTest, an_execution_that_has_shown_enough_ends_where_it_stands_and
             Outcome{});
 }
 
+TEST_F(LifetimeTest, a_mutex_held_by_who_was_under_way_when_enough_was_seen_is_no_leak) {
+  std::mutex mutex;
+  EXPECT_EQ(run([&](World& world) {
+              world.process("p").start("works", [&] {
+                const std::lock_guard lock{mutex};
+                std::this_thread::sleep_for(2ms);
+              });
+              world.process("p").start("has-seen-enough", [&world] {
+                std::this_thread::sleep_for(1ms);
+                world.finish();
+              });
+            }),
+            Outcome{});
+}
+
 }  // namespace
 }  // namespace ltsim
