@@ -211,9 +211,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       const auto kind = parse_outcome_kind(rest.substr(0, colon));
       if (!kind) return error(fmt::format("no outcome is called \"{}\"", rest.substr(0, colon)));
       schedule.outcome = *kind;
-      schedule.message = colon == rest.size()
-                             ? ""
-                             : rest.substr(std::min(rest.find_first_not_of(' ', colon + 1), rest.size()));
+      schedule.message = one_line(std::string{rest.substr(std::min(colon + 1, rest.size()))});
     } else if (words.front() == "input") {
       auto record = parse_quoted(rest_after_first_word(line));
       if (!record) return error(std::move(record.error()));

@@ -97,6 +97,12 @@ TEST(Schedule, an_input_that_is_no_quoted_text_is_refused_with_what_is_wrong) {
   EXPECT_EQ(reason("\"\x7f\""), "3: byte 0x7f is to be written as \\x7f");
 }
 
+TEST(Schedule, a_carriage_return_within_a_message_that_is_read_is_a_blank) {
+  const auto schedule = parse_schedule("ltsim schedule 1\nscenario a/b\noutcome crash: one\rtwo\n");
+  ASSERT_TRUE(schedule) << schedule.error().reason;
+  EXPECT_EQ(schedule->message, "one two");
+}
+
 TEST(Schedule, the_one_processor_of_a_machine_is_written_and_read) {
   Schedule schedule;
   schedule.scenario = "a/b";
