@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -20,7 +19,6 @@
 #include "sim_clock/explore/minimizer.hpp"
 #include "sim_clock/scenario/command.hpp"
 #include "sim_clock/scenario/fuzz_target.hpp"
-#include "sim_clock/scenario/report.hpp"
 
 namespace ltsim {
 namespace {

@@ -96,12 +96,7 @@ TaskStorage::TaskStorage() {
   LTSIM_CHECK(stack_base_ != MAP_FAILED);
   LTSIM_CHECK(mprotect(static_cast<char*>(stack_base_) + guard_bytes, stack_bytes, PROT_READ | PROT_WRITE) ==
               0);
-  // Stacks that begin at the same place of a page: the processor takes what one task reads for what another has just written
-  // 4 KiB apart, and waits.
-  constexpr std::size_t begins_count = 8;
-  constexpr std::size_t apart_bytes = 448;
-  stack_top_ = static_cast<char*>(stack_base_) + guard_bytes + stack_bytes -
-               thread_pointers_of_tasks().size() % begins_count * apart_bytes;
+  stack_top_ = static_cast<char*>(stack_base_) + guard_bytes + stack_bytes;
 
   thread_pointer_ = _dl_allocate_tls(nullptr);
   LTSIM_CHECK(thread_pointer_ != nullptr);
@@ -117,7 +112,8 @@ TaskStorage::TaskStorage() {
 TaskStorage::~TaskStorage() {
   std::erase(thread_pointers_of_tasks(), thread_pointer_);
   _dl_deallocate_tls(thread_pointer_, true);
-  munmap(stack_base_, guard_bytes + stack_bytes);
+  munmap(stack_base_,
+         static_cast<std::size_t>(static_cast<char*>(stack_top_) - static_cast<char*>(stack_base_)));
 }
 
 void TaskStorage::reset() noexcept {
@@ -140,7 +136,7 @@ bool TaskStorage::is_of_a_task(const void* thread_pointer) noexcept {
 bool TaskStorage::on_guard(const void* address) const noexcept {
   const auto* const at = static_cast<const char*>(address);
   const auto* const base = static_cast<const char*>(stack_base_);
-  return at >= base && at < base + guard_bytes;
+  return at >= base && at < static_cast<const char*>(stack_top_) - stack_bytes;
 }
 
 void TaskStorage::finish_set_up_of_current() noexcept { __ctype_init(); }
