@@ -79,6 +79,21 @@ PROPERTY(FxFrame, of_any_payload_is_refused_or_canonical, ()) {
   assert_refused_or_canonical(frame);
 }
 
+// 40H, 64 bytes at most in the commands 0 and 1, 254 in E00 and E10; a count of 0 asks for nothing.
+PROPERTY(FxFrame, with_a_count_is_taken_from_one_up_to_the_limit_of_its_command, ()) {
+  const bool wide = *rc::gen::arbitrary<bool>();
+  const bool writes = *rc::gen::arbitrary<bool>();
+  const unsigned limit = wide ? 254 : 64;
+  const unsigned count =
+      *rc::gen::oneOf(rc::gen::inRange(0U, 256U), rc::gen::element(0U, 1U, limit, limit + 1));
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string payload = wide ? (writes ? "E10" : "E00") : (writes ? "1" : "0");
+  payload += std::string{"1000"} + digits[count / 16] + digits[count % 16];
+  if (writes) payload += std::string(2 * std::size_t{count}, '5');
+  const FuzzInput input{"fx-frame", {closed(payload)}};
+  RC_ASSERT(decode_request(bytes_of(closed(payload))).has_value() == (count >= 1 && count <= limit));
+}
+
 using Event = FrameReceiver::Event;
 
 /// A piece of what comes over the line, and what the receiver says to it.
