@@ -79,7 +79,7 @@ PROPERTY(FxFrame, of_any_payload_is_refused_or_canonical, ()) {
   assert_refused_or_canonical(frame);
 }
 
-// 40H, 64 bytes at most in the commands 0 and 1, 254 in E00 and E10; a count of 0 asks for nothing.
+// As protocol/fx/README.md has it: 64 bytes at most by the commands 0 and 1, 254 by E00 and E10, and never none.
 PROPERTY(FxFrame, with_a_count_is_taken_from_one_up_to_the_limit_of_its_command, ()) {
   const bool wide = *rc::gen::arbitrary<bool>();
   const bool writes = *rc::gen::arbitrary<bool>();
