@@ -13,13 +13,9 @@
 extern "C" {
 int LLVMFuzzerInitialize(int* argc, char*** argv);
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t size_max,
-                                    unsigned seed);
-std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1, const std::uint8_t* data2,
-                                      std::size_t size2, std::uint8_t* out, std::size_t size_max,
-                                      unsigned seed);
-// Of the engine. Weak: one that never calls the mutator need not have it.
-[[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t size_max);
+// Of engine_mutator.cpp, in the programs whose target has a mutator.
+[[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t size_max,
+                                                  unsigned seed);
 }
 
 namespace {
@@ -29,13 +25,15 @@ const ltsim::FuzzTarget& target() {
   return only;
 }
 
-std::size_t mutate_as_engine(std::span<std::byte> data, std::size_t size) {
-  return LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(data.data()), size, data.size());
-}
-
 }  // namespace
 
 int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  const bool has_mutator = target().format.mutate != nullptr;
+  if (has_mutator != (&LLVMFuzzerCustomMutator != nullptr)) {
+    std::fprintf(stderr, "fuzz-%.*s: say MUTATOR in fuzz/CMakeLists.txt if and only if the target has one\n",
+                 static_cast<int>(target().name.size()), target().name.data());
+    std::exit(2);
+  }
   const std::span arguments{*argv, static_cast<std::size_t>(*argc)};
   if (target().needs_world()) {
     fuzz::obey_scenario_arguments(target(), arguments);
@@ -54,22 +52,4 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::abort();
   }
   return 0;
-}
-
-std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t size_max,
-                                    unsigned seed) {
-  const std::span bytes{reinterpret_cast<std::byte*>(data), size_max};
-  if (target().format.mutate == nullptr) return mutate_as_engine(bytes, size);
-  return target().format.mutate(bytes, size, seed, mutate_as_engine);
-}
-
-// The engine asks for it as often as for all other changes together, and tries something else when there is nothing.
-std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data1, std::size_t size1, const std::uint8_t* data2,
-                                      std::size_t size2, std::uint8_t* out, std::size_t size_max,
-                                      unsigned seed) {
-  constexpr unsigned one_of = 4;
-  if (target().format.splice == nullptr || seed % one_of != 0) return 0;
-  return target().format.splice({reinterpret_cast<const std::byte*>(data1), size1},
-                                {reinterpret_cast<const std::byte*>(data2), size2},
-                                {reinterpret_cast<std::byte*>(out), size_max}, seed);
 }

@@ -234,7 +234,7 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
       {"minimize passes.schedule", "passes.schedule: does not fail as it says"},
       {"explore paper/one-request --minimize-seconds -1", "--minimize-seconds"},
       {"fuzz", "targets"},
-      {"fuzz no-such", "there is no fuzz target \"no-such\"; there are: fx-frame, "},
+      {"fuzz no-such", "there is no fuzz target \"no-such\"; there are: fx-device-name, fx-frame, "},
       {"fuzz fx-frame --seconds 0", "--seconds"},
       {"fuzz fx-frame --jobs 65", "--jobs"},
       {"fuzz fx-frame --source nowhere",
