@@ -16,6 +16,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 // Of engine_mutator.cpp, in the programs whose target has a mutator.
 [[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t size_max,
                                                   unsigned seed);
+// Of AddressSanitizer, which asks the program for options.
+const char* __asan_default_options();
 }
 
 namespace {
@@ -26,6 +28,10 @@ const ltsim::FuzzTarget& target() {
 }
 
 }  // namespace
+
+// What was freed is kept from use for a while: some thousand runs are long enough, and the default of 256 MB is so long that
+// each run works on pages that are new to it.
+const char* __asan_default_options() { return "quarantine_size_mb=16"; }
 
 int LLVMFuzzerInitialize(int* argc, char*** argv) {
   const bool has_mutator = target().format.mutate != nullptr;

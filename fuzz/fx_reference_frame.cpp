@@ -11,18 +11,23 @@ constexpr char etx = 0x03;
 constexpr std::size_t longest_frame = 521;  // an E10 with 254 bytes
 constexpr std::size_t envelope = 4;         // STX, ETX, two characters of the sum
 
-std::string sum_of(std::string_view command_to_etx) {
+unsigned sum_of(std::string_view command_to_etx) {
   unsigned sum = 0;
   for (const char c : command_to_etx) sum += static_cast<unsigned char>(c);
-  return hexadecimal(sum, 2);
+  return sum;
+}
+
+bool has_sum(std::string_view message) {
+  const unsigned sum = sum_of(message.substr(1, message.size() - 3));
+  const std::string_view digits = message.substr(message.size() - 2);
+  return digits[0] == hex_digits[sum / 16 % 16] && digits[1] == hex_digits[sum % 16];
 }
 
 std::optional<FrameError> defect_of_envelope(std::string_view message) {
   if (message.size() < envelope || message.front() != stx || message[message.size() - 3] != etx)
     return FrameError::no_frame;
   if (message.size() > longest_frame) return FrameError::too_long;
-  if (sum_of(message.substr(1, message.size() - 3)) != message.substr(message.size() - 2))
-    return FrameError::bad_checksum;
+  if (!has_sum(message)) return FrameError::bad_checksum;
   return std::nullopt;
 }
 
@@ -85,7 +90,7 @@ unsigned value_of(std::string_view digits) {
 std::string framed(std::string_view payload) {
   std::string frame{payload};
   frame += etx;
-  return stx + frame + sum_of(frame);
+  return stx + frame + hexadecimal(sum_of(frame), 2);
 }
 
 ReferenceMessage reference_of_request(std::string_view message) {
