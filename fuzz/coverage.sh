@@ -3,7 +3,9 @@
 #
 #   fuzz/coverage.sh [FOLDER]     build/coverage/report if no folder is given
 #
-# Leaves FOLDER/index.html and FOLDER/unreached.txt ("file:line: text"), and prints the share of lines reached.
+# Leaves FOLDER/index.html and FOLDER/unreached.txt ("file:line: text", and behind it the reason of fuzz/unreached_reasons.txt), and
+# prints the share of lines reached. Exit code 1 when a line of protocol/, of the FX emulator or of a parser is neither
+# reached nor has a reason.
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 3
 . .ci/setup.sh
@@ -39,7 +41,16 @@ cov show -format=html -output-dir="$report" -ignore-filename-regex='^/usr/|/buil
 cov show -ignore-filename-regex='^/usr/|/build/' protocol emulator_models kernel_mocks |
   awk '/^\/.*:$/ { file = $0; sub(":$", "", file); sub("^" ENVIRON["PWD"] "/", "", file); next }
        match($0, /^ *[0-9]+\| +0\|/) { split($0, part, "|"); gsub(/ /, "", part[1]); text = substr($0, RLENGTH + 1)
-         if (text ~ /[^ \t{}]/) print file ":" part[1] ": " text }' >"$report/unreached.txt"
+         if (text ~ /[^ \t{}]/) print file ":" part[1] ": " text }' |
+  awk -F: '
+    NR == FNR { if (/^= /) reason = substr($0, 3)
+                else if (/^[^#]/) { file = $0; sub(/ .*/, "", file); text = $0; sub(/^[^ ]+ +/, "", text)
+                  count[file]++; texts[file, count[file]] = text; reasons[file, count[file]] = reason }
+                next }
+    { why = ""
+      for (i = 1; i <= count[$1] && why == ""; ++i)
+        if (texts[$1, i] == "*" || index($0, texts[$1, i])) why = "   <- " reasons[$1, i]
+      print $0 why }' fuzz/unreached_reasons.txt - >"$report/unreached.txt"
 
 # share NAME PATH...
 share() {
@@ -47,8 +58,12 @@ share() {
   shift
   cov report "$@" | awk -v name="$name" '$1 == "TOTAL" { printf "  %-24s %s of %s lines reached\n", name, $10, $8 }'
 }
+emulator=(emulator_models/{fx_plc_emulator,fx_plc,device_memory,special_devices,fx_address_map}.cpp)
+parsers=(kernel_mocks/{nc_parser,nc_lexer}.cpp emulator_models/soft_plc/{il_parser,il_lexer,il_literal}.cpp)
 say "lines reached by the corpora"
 share "protocol" protocol
-share "FX emulator" emulator_models/fx_plc_emulator.cpp emulator_models/fx_plc.cpp emulator_models/device_memory.cpp emulator_models/special_devices.cpp
-share "parsers" kernel_mocks/nc_parser.cpp kernel_mocks/nc_lexer.cpp emulator_models/soft_plc/il_parser.cpp emulator_models/soft_plc/il_lexer.cpp
+share "FX emulator" "${emulator[@]}"
+share "parsers" "${parsers[@]}"
+unexplained=$(grep -E "^($(tr ' ' '|' <<<"protocol/ ${emulator[*]} ${parsers[*]}"))" "$report/unreached.txt" | grep -v "   <- ")
+[ -z "$unexplained" ] || { printf '%s\n' "$unexplained" >&2; die "these lines are not reached, and fuzz/unreached_reasons.txt does not say why" 1; }
 say "$(wc -l <"$report/unreached.txt") lines that no corpus reaches are in $report/unreached.txt; open $report/index.html"

@@ -102,6 +102,7 @@ void decode_and_encode(std::span<const std::byte> frame) {
                   "a request that decodes encodes to the same bytes");
   } else {
     ltsim::expect(request.error() == *expected.defect, "the first defect of a request is the one named");
+    ltsim::expect(!to_string(request.error()).empty(), "a defect has words");
   }
   const auto reply = decode_data_reply(frame);
   const auto defect = fuzz::defect_of_reply(text_of(frame));

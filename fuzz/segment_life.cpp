@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fuzz/hostile_peer.hpp"
+#include "protocol/master_shared_memory_wrapper.hpp"
 #include "protocol/shared_memory_port.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
 #include "sim_clock/scenario/fuzz_scenario.hpp"
@@ -59,6 +60,7 @@ class TwoSides {
         posts_are_limited_{options.semaphore_maximum == PaperOptions::SemaphoreMaximum::one},
         named_{named},
         port_{fuzz::segment, options},
+        master_{fuzz::segment, options},
         slave_{fuzz::segment, options} {}
 
   void open_port() {
@@ -104,12 +106,45 @@ class TwoSides {
     const bool has_room = sent.size() <= answer.size();
     world_.require(written.has_value() || !port_.is_open() || !has_room || posts_are_limited_,
                    "an open port takes what fits");
+    world_.require(written.has_value() || !to_string(written.error()).empty(), "a refusal has words");
     const auto read = port_.read(answer);
     world_.require(read.has_value() == port_.is_open(), "an open port can be read");
     if (!port_.is_open()) {
       world_.require(written == tl::unexpected{PortError::not_open} && read == written,
                      "a closed port says that it is");
     }
+  }
+
+  void exchange_without_port() {
+    const bool opens = world_.choose("opens before", 2) == 1;
+    if (opens) {
+      const bool fits = open_has_room();
+      const auto opened = master_.open();
+      expect_open(opened.has_value(), fits, master_.is_open());
+    }
+    constexpr std::array<std::byte, 10> request{};  // there is room for 8
+    const auto sent = std::span{request}.first(world_.choose("request", request.size() + 1));
+    const auto written = master_.write(sent);
+    if (!written) {
+      const bool expected = written.error() == SharedMemoryError::not_open           ? !master_.is_open()
+                            : written.error() == SharedMemoryError::request_too_long ? sent.size() > 8
+                                                                                     : posts_are_limited_;
+      world_.require(expected, "a request is refused for a reason that there is");
+      world_.require(!to_string(written.error()).empty(), "a refusal has words");
+    }
+    std::array<std::byte, 8> answer{};
+    world_.require(master_.get_response(answer).has_value() == master_.is_open(),
+                   "what is open can be read, and nothing else");
+    master_.close();
+  }
+
+  /// A name that the system cannot take.
+  void open_impossible() {
+    protocol::SlaveSharedMemoryWrapper slave{"no/folders", slave_.options()};
+    const auto opened = slave.open();
+    world_.require(opened == tl::unexpected{SharedMemoryError::cannot_open} && !slave.is_open(),
+                   "what the system refuses cannot be opened");
+    world_.require(!to_string(opened.error()).empty(), "a refusal has words");
   }
 
   void set_timeouts() {
@@ -147,6 +182,7 @@ class TwoSides {
   bool posts_are_limited_;
   Named named_;
   protocol::SharedMemoryPort port_;
+  protocol::MasterSharedMemoryWrapper master_;  // what is in a port, used without one
   protocol::SlaveSharedMemoryWrapper slave_;
 };
 
@@ -160,9 +196,11 @@ FUZZ_SCENARIO("segment-life",
   const std::size_t steps = 1 + world.choose("steps", steps_max);
   world.process("kernel").start("main", [&] {
     TwoSides sides{world, options, named};
-    static constexpr std::array actions{
-        &TwoSides::open_port,   &TwoSides::exchange,     &TwoSides::close_port, &TwoSides::open_slave,
-        &TwoSides::close_slave, &TwoSides::set_timeouts, &TwoSides::remove};
+    static constexpr std::array actions{&TwoSides::open_port,      &TwoSides::exchange,
+                                        &TwoSides::close_port,     &TwoSides::open_slave,
+                                        &TwoSides::close_slave,    &TwoSides::set_timeouts,
+                                        &TwoSides::remove,         &TwoSides::exchange_without_port,
+                                        &TwoSides::open_impossible};
     for (std::size_t i = 0; i < steps; ++i) {
       (sides.*actions[world.choose("step", actions.size())])();
       sides.look();
