@@ -14,13 +14,21 @@ namespace {
 
 constexpr std::string_view only_memory = "sc";
 
+/// What separates words, and is no part of a line at its ends: a carriage return is one, wherever it stands.
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view without_blanks_around(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
 /// Words are separated by any number of blanks.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   for (std::size_t at = 0; at < line.size();) {
-    const std::size_t begin = line.find_first_not_of(" \t", at);
+    const std::size_t begin = line.find_first_not_of(blanks, at);
     if (begin == std::string_view::npos) break;
-    const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+    const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
     words.push_back(line.substr(begin, end - begin));
     at = end;
   }
@@ -28,10 +36,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 std::string_view rest_after_first_word(std::string_view line) {
-  const std::size_t blank = line.find_first_of(" \t");
-  if (blank == std::string_view::npos) return {};
-  const std::size_t begin = line.find_first_not_of(" \t", blank);
-  return begin == std::string_view::npos ? std::string_view{} : line.substr(begin);
+  return without_blanks_around(line.substr(std::min(line.find_first_of(blanks), line.size())));
 }
 
 std::string join(const std::vector<std::string_view>& words, std::size_t begin, std::size_t end) {
@@ -160,8 +165,8 @@ std::vector<std::string> input_lines(const Schedule& schedule) {
 
 std::string one_line(std::string message) {
   std::replace_if(message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  // Blanks before it would be taken for those of the line.
-  return message.substr(std::min(message.find_first_not_of(' '), message.size()));
+  // Blanks around it would be taken for those of the line.
+  return std::string{without_blanks_around(message)};
 }
 
 std::string to_string(const Schedule& schedule) {
@@ -184,10 +189,9 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
   };
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
+    const std::string_view line = without_blanks_around(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
     ++number;
-    while (line.ends_with('\r')) line.remove_suffix(1);
     const auto words = words_of(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     if (!header_seen) {
