@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <semaphore.h>
 
+#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -73,6 +74,69 @@ PROPERTY(Strategies, reach_every_interleaving_of_a_small_program, ()) {
                             orders.insert(order);
                           }};
   RC_ASSERT(sees_all(scenario, name, orders, interleavings(steps)));
+}
+
+/// Makes the choices of another, and counts which of the tasks that could run it takes.
+class CountingStrategy final : public Strategy {
+ public:
+  static constexpr std::size_t options_max = 4;
+  using Counts =
+      std::array<std::array<unsigned, options_max>, options_max + 1>;  // by how many could run, by index
+
+  explicit CountingStrategy(Strategy& chooser) : chooser_{chooser} {}
+
+  [[nodiscard]] std::string_view name() const noexcept override { return chooser_.name(); }
+  void begin_execution(std::uint64_t seed) noexcept override { chooser_.begin_execution(seed); }
+  void learn(const ExecutionSummary& summary) noexcept override { chooser_.learn(summary); }
+  [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override {
+    const std::size_t chosen = chooser_.choose_task(choice);
+    ++taken_[choice.options.size()][chosen];
+    return chosen;
+  }
+  [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override {
+    return chooser_.slow_moment(choice);
+  }
+  [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override {
+    return chooser_.strike(kind, variants_count);
+  }
+  [[nodiscard]] std::size_t answer(std::size_t count) noexcept override { return chooser_.answer(count); }
+  [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
+  void performs(TaskId task, const Operation& operation) noexcept override {
+    chooser_.performs(task, operation);
+  }
+
+  [[nodiscard]] const Counts& taken() const noexcept { return taken_; }
+
+ private:
+  Strategy& chooser_;
+  Counts taken_{};
+};
+
+// By itself: what one kind of decision leaves out, a slow moment at the right place can make up for.
+PROPERTY(Strategies, take_any_of_the_tasks_that_can_run, ()) {
+  const auto tasks = *rc::gen::inRange<std::size_t>(2, CountingStrategy::options_max + 1);
+  const auto steps = *rc::gen::inRange(2, 5);
+  const std::string name = *rc::gen::elementOf(strategy_names());
+  const Scenario scenario{"property/take-any", "", [&](World& of_run) {
+                            const auto word = std::make_shared<std::atomic<int>>(0);
+                            for (std::size_t task = 0; task < tasks; ++task) {
+                              of_run.process("p").start(std::to_string(task), [steps, word] {
+                                for (int i = 0; i < steps; ++i) word->fetch_add(i);
+                              });
+                            }
+                            of_run.run();
+                          }};
+  const auto strategy = make_strategy(name);
+  CountingStrategy counting{*strategy};
+  ExploreOptions options;
+  options.executions_max = 3'000;
+  static_cast<void>(Explorer{world()}.explore(scenario, counting, options));
+  for (std::size_t count = 2; count <= tasks; ++count) {
+    for (std::size_t index = 0; index < count; ++index) {
+      RC_LOG() << counting.taken()[count][index] << " times number " << index << " of " << count << '\n';
+      RC_ASSERT(counting.taken()[count][index] > 0);
+    }
+  }
 }
 
 PROPERTY(Strategies, give_every_answer, ()) {
