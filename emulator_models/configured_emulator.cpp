@@ -20,6 +20,7 @@
 #include "emulator_models/configured_port.hpp"
 #include "emulator_models/cycle_report.hpp"
 #include "emulator_models/emulator_handler.hpp"
+#include "emulator_models/exit_codes.hpp"
 #include "emulator_models/plant_drivers.hpp"
 #include "emulator_models/pty_server.hpp"
 #include "emulator_models/served_segment.hpp"
@@ -32,9 +33,6 @@ using soft_plc::ConfiguredPlc;
 using soft_plc::SoftPlc;
 using std::chrono::steady_clock;
 
-constexpr int exit_ended = 0;
-constexpr int exit_usage = 2;
-constexpr int exit_own_fault = 3;
 constexpr timespec look_interval{.tv_sec = 0, .tv_nsec = 10'000'000};
 constexpr auto handled_signals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
 

@@ -25,6 +25,7 @@
 #include "emulator_models/configured_emulator.hpp"
 #include "emulator_models/emulator_handler.hpp"
 #include "emulator_models/emulator_options.hpp"
+#include "emulator_models/exit_codes.hpp"
 #include "emulator_models/fx_plc.hpp"
 #include "emulator_models/fx_plc_emulator.hpp"
 #include "emulator_models/fx_plc_loop.hpp"
@@ -39,10 +40,6 @@
 namespace {
 
 using namespace emulator_models;
-
-constexpr int exit_ended = 0;
-constexpr int exit_usage = 2;
-constexpr int exit_own_fault = 3;
 
 int complain(int exit_code, const std::string& message) {
   fmt::print(stderr, "plc-emulator: {}\n", message);

@@ -17,41 +17,41 @@ namespace {
 constexpr int exit_taken = 0;
 constexpr int exit_refused = 2;
 
-int complain(const std::string& message) {
+int give_up(const std::string& message) {
   fmt::print(stderr, "plc-emulator: {}\n", message);
   return exit_refused;
 }
 
 int send(const std::string& path, protocol::SerialPort& port, const std::string& where) {
   const auto text = soft_plc::read_file(path);
-  if (!text) return complain(path + " cannot be read; check path and permissions");
+  if (!text) return give_up(path + " cannot be read; check path and permissions");
   if (const auto opened = port.open(); !opened)
-    return complain(fmt::format("{}: {}", where, to_string(opened.error())));
+    return give_up(fmt::format("{}: {}", where, to_string(opened.error())));
   const auto sent = ConfigurationSender{port}.send(*text);
   if (sent) {
     fmt::print("{}: taken by the PLC on {}\n", path, where);
     return exit_taken;
   }
   if (!sent.error().is_refusal)
-    return complain(
+    return give_up(
         fmt::format("{}: {}; nobody knows whether {} was taken", where, sent.error().reason, path));
   // The PLC names the place in the text, and leaves the file's name to who knows it.
   const bool has_place = sent.error().reason.starts_with(':');
-  return complain(fmt::format("refused by the PLC on {}, its configuration of before goes on: {}{}{}", where,
-                              path, has_place ? "" : ": ", sent.error().reason));
+  return give_up(fmt::format("refused by the PLC on {}, its configuration of before goes on: {}{}{}", where,
+                             path, has_place ? "" : ": ", sent.error().reason));
 }
 
 int send_to_segment(const std::string& path, const EmulatorOptions& options) {
   const std::string where = fmt::format("segment '{}'", options.segment_name);
   protocol::RoleLock role{options.segment_name, protocol::Role::kernel};
   if (const auto locked = role.try_lock(); !locked)
-    return complain(
+    return give_up(
         locked.error() == protocol::RoleLockError::held_by_other
             ? fmt::format("{}: a kernel is attached. Stop it, or send over the line (--pty)", where)
             : fmt::format("{}: {}", where, to_string(locked.error())));
   // Opening would create what is missing, and leave behind a segment that nobody serves.
   if (!protocol::SharedMemoryWrapper::exists(options.segment_name))
-    return complain(fmt::format("no PLC on {}: there is no such segment", where));
+    return give_up(fmt::format("no PLC on {}: there is no such segment", where));
   protocol::SharedMemoryPort port{options.segment_name, options.paper};
   return send(path, port, where);
 }
@@ -73,7 +73,7 @@ void add_send_configuration_options(CLI::App& app, SendConfigurationOptions& opt
 
 int run_send_configuration(const SendConfigurationOptions& options, const EmulatorOptions& port) {
   if (options.device.empty() && port.segment_name.empty())
-    return complain("where is the PLC? --segment NAME or --port PATH");
+    return give_up("where is the PLC? --segment NAME or --port PATH");
   if (options.device.empty()) return send_to_segment(options.path, port);
   protocol::PosixSerialPort line{options.device};
   return send(options.path, line, options.device);

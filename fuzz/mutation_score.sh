@@ -105,7 +105,11 @@ run_scenarios() {
 look_for() {
   local program
   findings=()
-  build_copy || { tail -n 20 "$planted/build.log" >&2; die "$1 does not build" 3; }
+  if ! build_copy; then
+    tail -n 20 "$planted/build.log" >&2
+    printf '%-34s %s\n' "$1" "does not build" | tee -a "$score"
+    return 1
+  fi
   for program in "$copy"/build/fuzz/bin/fuzz-* "$copy"/build/fuzz-world/bin/fuzz-*; do
     ! relinked "$program" || run_engine "$program"
   done
