@@ -43,8 +43,7 @@ rc::Gen<std::uint16_t> address_of_interest(Model model, bool wide) {
   return rc::gen::exec([=] {
     const auto ranges = fx_address_ranges(model, wide);
     if (ranges.empty() || *rc::gen::inRange(0, 10) == 0) return *rc::gen::arbitrary<std::uint16_t>();
-    const FxAddressRange range = *rc::gen::map(rc::gen::inRange<std::size_t>(0, ranges.size()),
-                                               [&](std::size_t i) { return ranges[i]; });
+    const FxAddressRange range = ranges[*rc::gen::inRange<std::size_t>(0, ranges.size())];
     const unsigned from = *rc::gen::element(range.first, range.first, range.end);
     return static_cast<std::uint16_t>(from + *rc::gen::inRange(0U, 12U) - (from == range.end ? 6U : 0U));
   });

@@ -80,7 +80,7 @@ rc::Gen<SmallProgram> any_small_program(std::vector<Step::Kind> kinds) {
     for (auto& task : program.tasks) {
       task = *rc::gen::container<std::vector<Step>>(
           *rc::gen::inRange<std::size_t>(1, 5),
-          rc::gen::exec([&kinds] { return Step{*rc::gen::elementOf(kinds), *rc::gen::inRange(0U, 2U)}; }));
+          rc::gen::exec([kinds] { return Step{*rc::gen::elementOf(kinds), *rc::gen::inRange(0U, 2U)}; }));
     }
     return program;
   });
