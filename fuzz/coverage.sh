@@ -47,9 +47,9 @@ cov show -ignore-filename-regex='^/usr/|/build/' protocol emulator_models kernel
                 else if (/^[^#]/) { file = $0; sub(/ .*/, "", file); text = $0; sub(/^[^ ]+ +/, "", text)
                   count[file]++; texts[file, count[file]] = text; reasons[file, count[file]] = reason }
                 next }
-    { why = ""
+    { why = ""; line = $0; sub(/^[^:]*:[0-9]*: */, "", line); sub(/ +$/, "", line)
       for (i = 1; i <= count[$1] && why == ""; ++i)
-        if (texts[$1, i] == "*" || index($0, texts[$1, i])) why = "   <- " reasons[$1, i]
+        if (texts[$1, i] == "*" || texts[$1, i] == line) why = "   <- " reasons[$1, i]
       print $0 why }' fuzz/unreached_reasons.txt - >"$report/unreached.txt"
 
 # share NAME PATH...

@@ -14,6 +14,7 @@
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 3
 . .ci/setup.sh
+. fuzz/engine_options.sh
 
 list=$PWD/fuzz/planted_faults.txt
 planted=$PWD/build/planted
@@ -74,11 +75,8 @@ relinked() { [ "$1" -nt "$planted/before" ]; }
 found() { findings+=("$1 ($2)"); }
 
 run_engine() {
-  local program=$1 name=${1##*/fuzz-} options=() line log=$planted/run.log
-  [ ! -e "fuzz/$name.dict" ] || options+=("-dict=fuzz/$name.dict")
-  if [ -e "fuzz/$name.options" ]; then
-    while read -r line; do options+=("-$line"); done < <(sed -n 's/ //g; /^[a-z_]*=/p' "fuzz/$name.options")
-  fi
+  local program=$1 name=${1##*/fuzz-} options log=$planted/run.log
+  engine_options "$name"
   rm -rf "$planted/corpus" && mkdir -p "$planted/corpus"
   "$program" "$planted/corpus" "fuzz/corpus/$name" "${options[@]}" -seed=1 -runs="$runs" -max_total_time="$seconds" -timeout=10 \
     -artifact_prefix="$planted/" -print_final_stats=1 >"$log" 2>&1 && return

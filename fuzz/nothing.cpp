@@ -1,4 +1,4 @@
-// What the engine costs by itself, for tests/bench/fuzz_rates.sh.
+// The empty target: what the engine costs by itself.
 
 #include "sim_clock/scenario/fuzz_target.hpp"
 

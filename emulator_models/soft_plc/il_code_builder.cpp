@@ -92,8 +92,9 @@ void CodeBuilder::require_cr(SourcePlace place) {
   if (cr().state == State::undefined)
     fail(place, "CR is not set, or not of one type, on every way to this line: begin with LD");
   if (!cr().after_call) return;
-  program_.warnings.push_back(
-      {place, "CR comes from before a CAL: this PLC keeps it, others do not; load it again to be safe"});
+  const IlError warning{
+      place, "CR comes from before a CAL: this PLC keeps it, others do not; load it again to be safe"};
+  program_.warnings.push_back(warning);  // not moved: gcc 12 would see it read beyond its end
   current_.cr.after_call = false;
 }
 

@@ -9,6 +9,7 @@
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 3
 . .ci/setup.sh
+. fuzz/engine_options.sh
 
 rounds=${ROUNDS:-3}
 seconds=${SECONDS_EACH:-5}
@@ -22,12 +23,9 @@ trap 'rm -rf "$scratch"' EXIT
 
 # rate PROGRAM: executions in a second of processor time.
 rate() {
-  local name=${1##*/fuzz-} options=() corpora=("$scratch/corpus") line
+  local name=${1##*/fuzz-} options corpora=("$scratch/corpus")
   [ ! -d "fuzz/corpus/$name" ] || corpora+=("fuzz/corpus/$name")
-  if [ -e "fuzz/$name.options" ]; then
-    while read -r line; do options+=("-$line"); done < <(sed -n 's/ //g; /^[a-z_]*=/p' "fuzz/$name.options")
-  fi
-  [ ! -e "fuzz/$name.dict" ] || options+=("-dict=fuzz/$name.dict")
+  engine_options "$name"
   rm -rf "$scratch/corpus" && mkdir -p "$scratch/corpus"
   local TIMEFORMAT='%U %S'
   { time "$1" "${corpora[@]}" "${options[@]}" -max_total_time="$seconds" -print_final_stats=1 \
