@@ -100,6 +100,9 @@ class CountingStrategy final : public Strategy {
     return chooser_.strike(kind, variants_count);
   }
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override { return chooser_.answer(count); }
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override {
+    return chooser_.choose_age(choice);
+  }
   [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     chooser_.performs(task, operation);

@@ -10,6 +10,8 @@ constexpr std::size_t slots_at_first = 256;
 // What the compilers pass are the values of their __ATOMIC_ macros, in GCC with hints for lock elision above.
 constexpr int order_mask = 0xff;
 
+}  // namespace
+
 bool acquires(int order) noexcept {
   switch (order & order_mask) {
     case __ATOMIC_CONSUME:
@@ -33,7 +35,7 @@ bool releases(int order) noexcept {
   }
 }
 
-}  // namespace
+bool is_seq_cst(int order) noexcept { return (order & order_mask) == __ATOMIC_SEQ_CST; }
 
 HappensBefore::HappensBefore() : slots_(slots_at_first) {}
 
@@ -95,6 +97,17 @@ void HappensBefore::after_atomic(TaskId task, SyncKey key, AtomicAccess access, 
     clocks_.join(handed_over, hands_over);
   }
   if (hands_over == self.now) tick(task);
+}
+
+HappensBefore::HandedOver HappensBefore::store_hands_over(TaskId task, int order, HandedOver continued) {
+  const TaskClocks& self = tasks_[task];
+  const Row hands_over = releases(order) ? self.now : self.fenced;
+  if (hands_over == none && continued == none) return nothing;
+  const Row row = clocks_.take();
+  if (hands_over != none) clocks_.join(row, hands_over);
+  if (continued != none) clocks_.join(row, continued);
+  if (releases(order)) tick(task);
+  return row;
 }
 
 void HappensBefore::receive(TaskClocks& task, Row handed_over, int order) {

@@ -32,6 +32,11 @@ struct SyncKey {
 
 enum class AtomicAccess : std::uint8_t { load, store, update };
 
+/// Whether a memory order, one of the __ATOMIC_ macros, has the parts of these names.
+[[nodiscard]] bool acquires(int order) noexcept;
+[[nodiscard]] bool releases(int order) noexcept;
+[[nodiscard]] bool is_seq_cst(int order) noexcept;
+
 /// What a load or the load of an update may receive, and what a store or the store of an update hands over.
 [[nodiscard]] constexpr bool reads(AtomicAccess access) noexcept { return access != AtomicAccess::store; }
 [[nodiscard]] constexpr bool writes(AtomicAccess access) noexcept { return access != AtomicAccess::load; }
@@ -60,6 +65,26 @@ class HappensBefore {
   void after_atomic(TaskId task, SyncKey key, AtomicAccess access, int order);
   void fence(TaskId task, int order);
 
+  // --- for a memory that keeps more than the latest store of a place (WeakMemory) ---
+
+  /// What one store hands over to the loads that see it.
+  using HandedOver = VectorClocks::Row;
+  static constexpr HandedOver nothing = ~HandedOver{0};
+  /// A store is made. @param continued  of the store that it replaces as an update, whose release sequence it is part of
+  [[nodiscard]] HandedOver store_hands_over(TaskId task, int order, HandedOver continued);
+  /// A load sees a store.
+  void load_receives(TaskId task, HandedOver handed_over, int order) {
+    if (handed_over != nothing) receive(tasks_[task], handed_over, order);
+  }
+  /// Nobody can see that store any more.
+  void drop(HandedOver handed_over) {
+    if (handed_over != nothing) clocks_.give_back(handed_over);
+  }
+  /// What is handed over there, by task number.
+  [[nodiscard]] const Ticks* covered_by(HandedOver handed_over) const noexcept {
+    return clocks_.at(handed_over);
+  }
+
   /// The clock of a task: what it does now is known to those who know at least that much of it.
   [[nodiscard]] Ticks now(TaskId task) const noexcept { return clocks_.at(tasks_[task].now)[task]; }
   /// What `task` knows, by task number.
@@ -67,7 +92,7 @@ class HappensBefore {
 
  private:
   using Row = VectorClocks::Row;
-  static constexpr Row none = ~Row{0};
+  static constexpr Row none = nothing;
 
   struct TaskClocks {
     Row now = none;       // what happened before its next step

@@ -22,6 +22,10 @@ class MemoryChecks {
   /// Forgets the last execution, but not what the exploration has seen.
   void reset() noexcept;
 
+  /// What orders tasks is followed in this execution, also if the checks are off. Before the first task begins.
+  void follow_order() noexcept { follows_order_ = true; }
+  [[nodiscard]] HappensBefore& order() noexcept { return order_; }
+
   /// On or off for the executions that begin from now on.
   void set_on(bool on) noexcept { wanted_on_ = on; }
   [[nodiscard]] bool on() const noexcept { return on_; }
@@ -70,28 +74,29 @@ class MemoryChecks {
   // --- what orders tasks; see HappensBefore ---
 
   void task_begins(TaskId task) {
-    if (on_) order_.begins(task);
+    if (follows_order_) order_.begins(task);
   }
   void follows(TaskId later, TaskId earlier) noexcept {
-    if (on_) order_.follows(later, earlier);
+    if (follows_order_) order_.follows(later, earlier);
   }
   void release(TaskId task, SyncKey key) {
-    if (on_) order_.release(task, key);
+    if (follows_order_) order_.release(task, key);
   }
   void acquire(TaskId task, SyncKey key) noexcept {
-    if (on_) order_.acquire(task, key);
+    if (follows_order_) order_.acquire(task, key);
   }
   void forget(SyncKey key) noexcept {
-    if (on_) order_.forget(key);
+    if (follows_order_) order_.forget(key);
   }
   void fence(TaskId task, int order) {
-    if (on_) order_.fence(task, order);
+    if (follows_order_) order_.fence(task, order);
   }
 
   [[nodiscard]] Coverage& coverage() noexcept { return coverage_; }
 
  private:
   bool on_ = false;
+  bool follows_order_ = false;
   bool wanted_on_ = true;
   bool races_allowed_ = false;
   HappensBefore order_;

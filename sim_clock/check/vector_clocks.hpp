@@ -1,6 +1,6 @@
 // Vector clocks: rows of counters, one counter a task, that say how much of each task has happened before.
 //
-// Rows are pooled and given back all at once. Every operation costs as many counters as there are tasks,
+// Rows are pooled. Every operation costs as many counters as there are tasks,
 // in whole vector registers; after the first executions nothing allocates.
 //
 // Invariants
@@ -26,6 +26,7 @@ class VectorClocks {
   void reset() noexcept {
     for (Row row = 0; row < taken_; ++row) clear(row);
     taken_ = 0;
+    given_back_.clear();
     width_ = width_step;
   }
 
@@ -36,9 +37,20 @@ class VectorClocks {
 
   /// @return a row of zeros
   [[nodiscard]] Row take() {
+    if (!given_back_.empty()) {
+      const Row row = given_back_.back();
+      given_back_.pop_back();
+      return row;
+    }
     if (counters_.size() < (taken_ + std::size_t{1}) * stride)
       counters_.resize(counters_.size() + 8 * stride);
     return taken_++;
+  }
+
+  /// The row is not needed any more.
+  void give_back(Row row) {
+    clear(row);
+    given_back_.push_back(row);
   }
 
   [[nodiscard]] Ticks* at(Row row) noexcept { return counters_.data() + row * stride; }
@@ -62,6 +74,7 @@ class VectorClocks {
 
   std::vector<Ticks> counters_;
   Row taken_ = 0;
+  std::vector<Row> given_back_;
   std::size_t width_ = width_step;
 };
 

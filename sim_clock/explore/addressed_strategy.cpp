@@ -76,6 +76,21 @@ std::size_t AddressedStrategy::answer(std::size_t count) noexcept {
   return 0;
 }
 
+std::size_t AddressedStrategy::choose_age(const AgeChoice& choice) noexcept {
+  const DecisionAddress address = counter_.next(Question::age, choice.running);
+  if (const AddressedDeviation* const deviation = find(address)) {
+    const auto age = std::find(choice.ages.begin(), choice.ages.end(), deviation->value);
+    if (age == choice.ages.end()) return 0;
+    causes_.add_age(choice.running, *age);
+    return static_cast<std::size_t>(age - choice.ages.begin());
+  }
+  if (lists(Question::age) && allows(*filter_, choice.running)) {
+    for (const std::uint32_t age : choice.ages.subspan(1))
+      alternatives_.push_back({.at = address, .value = age, .slow = {}});
+  }
+  return 0;
+}
+
 const AddressedDeviation* AddressedStrategy::find(const DecisionAddress& address) noexcept {
   if (taken_count_ == deviations_.size()) return nullptr;
   for (const AddressedDeviation& deviation : deviations_) {
@@ -131,6 +146,13 @@ std::size_t AddressRecorder::answer(std::size_t count) noexcept {
   if (answered != 0)
     deviations_.push_back({.at = address, .value = static_cast<std::uint32_t>(answered), .slow = {}});
   return answered;
+}
+
+std::size_t AddressRecorder::choose_age(const AgeChoice& choice) noexcept {
+  const DecisionAddress address = counter_.next(Question::age, choice.running);
+  const std::size_t chosen = chooser_.choose_age(choice);
+  if (chosen != 0) deviations_.push_back({.at = address, .value = choice.ages[chosen], .slow = {}});
+  return chosen;
 }
 
 }  // namespace ltsim

@@ -15,11 +15,12 @@
 
 namespace ltsim {
 
-enum class Question : std::uint8_t { task, slow_moment, fault, answer };
+enum class Question : std::uint8_t { task, slow_moment, fault, answer, age };
+inline constexpr std::size_t questions_count = 5;
 
 struct DecisionAddress {
   Question question = Question::task;
-  std::uint16_t whose = 0;    ///< task, slow_moment: the running task; fault: its kind; answer: 0
+  std::uint16_t whose = 0;    ///< task, slow_moment, age: the running task; fault: its kind; answer: 0
   std::uint32_t ordinal = 0;  ///< from 0
 
   bool operator==(const DecisionAddress&) const = default;
@@ -27,13 +28,14 @@ struct DecisionAddress {
 
 struct AddressedDeviation {
   DecisionAddress at{};
-  std::uint32_t value = 0;  ///< task: the number of the one chosen; fault: its variant; answer
-  SlowMoment slow{};        ///< slow_moment
+  std::uint32_t value =
+      0;  ///< task: the number of the one chosen; fault: its variant; answer; age: so many are newer
+  SlowMoment slow{};  ///< slow_moment
 };
 
 /// Which deviations a search tries.
 struct SearchFilter {
-  std::array<bool, 4> questions{true, true, true, true};  ///< by Question
+  std::array<bool, questions_count> questions{true, true, true, true, true};  ///< by Question
   std::uint64_t tasks =
       ~std::uint64_t{0};      ///< bit = number of a task that may be switched from and to; 63: all further
   bool whole_machine = true;  ///< slow moments of everybody
@@ -50,7 +52,7 @@ class DecisionCounter {
 
  private:
   static constexpr std::size_t tasks_max = 256;
-  std::array<std::array<std::uint32_t, tasks_max>, 4> counts_{};
+  std::array<std::array<std::uint32_t, tasks_max>, questions_count> counts_{};
 };
 
 class AddressedStrategy final : public Strategy {
@@ -74,6 +76,7 @@ class AddressedStrategy final : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
   [[nodiscard]] bool follows_steps() const noexcept override { return true; }
   void performs(TaskId task, const Operation& operation) noexcept override { causes_.add(task, operation); }
 
@@ -110,6 +113,7 @@ class AddressRecorder final : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
 
  private:
   Strategy& chooser_;

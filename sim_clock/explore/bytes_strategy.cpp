@@ -92,4 +92,8 @@ std::size_t BytesStrategy::answer(std::size_t count) noexcept {
   return is_due(kind) ? 1 + take(kind) % (count - 1) : 0;
 }
 
+std::size_t BytesStrategy::choose_age(const AgeChoice& choice) noexcept {
+  return is_due(age_kind) ? 1 + take(age_kind) % (choice.ages.size() - 1) : 0;
+}
+
 }  // namespace ltsim

@@ -26,11 +26,12 @@ namespace ltsim {
 
 class BytesStrategy final : public Strategy {
  public:
-  /// `fault` and what follows are the kinds of faults: kind_of().
+  /// `fault` and what follows are the kinds of faults: kind_of(); the last is the age of a store: age_kind.
   enum class Kind : std::uint8_t { task, slow_machine, slow_task, answer, fault };
 
   static constexpr std::size_t record_bytes = 5;
-  static constexpr std::size_t kinds_count = static_cast<std::size_t>(Kind::fault) + fault_kinds_count;
+  static constexpr std::size_t age_kind = static_cast<std::size_t>(Kind::fault) + fault_kinds_count;
+  static constexpr std::size_t kinds_count = age_kind + 1;
   /// Of a slow moment. Value 0 is until the next timer where one is armed, those above are remainders.
   static constexpr std::array<SimTime, 7> durations{
       std::chrono::microseconds{10}, std::chrono::milliseconds{1},  std::chrono::milliseconds{5},
@@ -69,6 +70,7 @@ class BytesStrategy final : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
 
  private:
   /// The next record of a kind.

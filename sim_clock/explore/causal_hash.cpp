@@ -63,6 +63,12 @@ void CausalHash::add(TaskId task, const Operation& operation) noexcept {
   sum_ += splitmix64(hash);
 }
 
+void CausalHash::add_age(TaskId task, std::uint32_t age) noexcept {
+  std::uint64_t& last = last_of_task_[task];
+  last = joined(last, age);
+  sum_ += splitmix64(last);
+}
+
 CausalHash::Place& CausalHash::place(std::uint64_t key) noexcept {
   std::size_t slot = splitmix64(key) % places_max;
   for (unsigned probes = 0; probes < 8; ++probes, slot = (slot + 1) % places_max) {

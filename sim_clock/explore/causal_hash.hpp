@@ -20,6 +20,8 @@ class CausalHash {
 
   void reset() noexcept;
   void add(TaskId task, const Operation& operation) noexcept;
+  /// The last step of the task has taken a store that so many are newer than.
+  void add_age(TaskId task, std::uint32_t age) noexcept;
   [[nodiscard]] std::uint64_t value() const noexcept { return sum_; }
 
  private:

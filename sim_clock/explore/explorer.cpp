@@ -108,6 +108,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
   ExploreReport report;
   HashSet traces{distinct_schedules_max};
   world_.coverage().forget();
+  world_.set_default_memory(options.memory);
   world_.set_default_cpu(options.cpu);
   while (report.executions < options.executions_max) {
     if (options.seconds_max && report.executions % executions_per_look_at_the_time == 0 &&
@@ -160,6 +161,7 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                  .schedule = {.scenario = std::string{scenario.name},
                               .outcome = outcome.kind,
                               .message = one_line(outcome.message),
+                              .memory = world_.memory(),
                               .cpu = world_.scheduler().cpu(),
                               .input = world_.input_records(),
                               .deviations = recording.deviations()},
@@ -189,6 +191,7 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
   const SignalGuard signals;
+  world_.set_default_memory(schedule.memory);
   world_.set_default_cpu(schedule.cpu);
   world_.set_input(schedule.input);
   {

@@ -60,6 +60,7 @@ bool is_slow_moment(const Deviation& deviation) noexcept {
 
 MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOptions& options) {
   const SignalGuard signals;
+  world_.set_default_memory(failing.memory);
   world_.set_default_cpu(failing.cpu);
   world_.set_input(failing.input);
   SearchBudget budget{options.executions_max, options.points_max, options.seconds_max};
@@ -310,7 +311,7 @@ void Minimizer::shrink_magnitudes() {
     Deviation changed = given;
     if (is_slow_moment(given)) {
       shrink_duration(line);
-    } else if (given.kind == Deviation::Kind::choose) {
+    } else if (given.kind == Deviation::Kind::choose || given.kind == Deviation::Kind::older) {
       for (changed.answer = 1; changed.answer < given.answer; ++changed.answer) {
         if (!has_budget(end_of_budget) || still_fails_with(line, changed)) break;
       }

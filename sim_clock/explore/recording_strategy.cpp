@@ -42,6 +42,17 @@ std::size_t RecordingStrategy::answer(std::size_t count) noexcept {
   return answered;
 }
 
+std::size_t RecordingStrategy::choose_age(const AgeChoice& choice) noexcept {
+  const std::size_t chosen = chooser_.choose_age(choice);
+  if (chosen == 0) return chosen;
+  Deviation deviation;
+  deviation.kind = Deviation::Kind::older;
+  deviation.anchor = anchors_.anchor();
+  deviation.answer = choice.ages[chosen];
+  deviations_.push_back(std::move(deviation));
+  return chosen;
+}
+
 SlowMoment RecordingStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
   const SlowMoment moment = chooser_.slow_moment(choice);
   if (moment.duration != SimTime{0}) {

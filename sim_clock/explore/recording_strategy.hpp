@@ -21,6 +21,7 @@ class RecordingStrategy final : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
   [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     chooser_.performs(task, operation);

@@ -1,5 +1,7 @@
 #include "sim_clock/explore/replay_strategy.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sim_clock/world/world.hpp"
@@ -58,6 +60,15 @@ std::size_t ReplayStrategy::answer(std::size_t count) noexcept {
   return entry->deviation->answer;
 }
 
+std::size_t ReplayStrategy::choose_age(const AgeChoice& choice) noexcept {
+  Entry* const entry = entry_here(Deviation::Kind::older);
+  if (entry == nullptr) return 0;
+  const auto found = std::find(choice.ages.begin(), choice.ages.end(), entry->deviation->answer);
+  if (found == choice.ages.end()) return 0;
+  entry->carried_out = true;
+  return static_cast<std::size_t>(found - choice.ages.begin());
+}
+
 SlowMoment ReplayStrategy::slow_moment(const SlowMomentChoice& /*choice*/) noexcept {
   for (const auto kind : {Deviation::Kind::pass_time, Deviation::Kind::stall}) {
     Entry* const entry = entry_here(kind);
@@ -74,9 +85,11 @@ std::optional<ReplayStrategy::Divergence> ReplayStrategy::divergence() const {
     const std::string_view reason =
         !entry.reached                                          ? "the execution never came to this place"
         : entry.deviation->kind == Deviation::Kind::switch_task ? "the task cannot run there"
-        : entry.deviation->kind != Deviation::Kind::fault       ? "there is no such answer"
-        : entry.deviation->fault == FaultKind::crash            ? "the process does not run there"
-                                                                : "the fault cannot strike there so";
+        : entry.deviation->kind == Deviation::Kind::older
+            ? "memory allows no store there that is so much older"
+        : entry.deviation->kind != Deviation::Kind::fault ? "there is no such answer"
+        : entry.deviation->fault == FaultKind::crash      ? "the process does not run there"
+                                                          : "the fault cannot strike there so";
     return Divergence{.deviation = entry.deviation, .reason = std::string{reason}};
   }
   return std::nullopt;

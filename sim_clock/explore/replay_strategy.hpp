@@ -28,6 +28,7 @@ class ReplayStrategy final : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
 
   struct Divergence {
     const Deviation* deviation;

@@ -22,6 +22,7 @@ void SamplingStrategy::begin_execution(std::uint64_t seed) noexcept {
   if (time_mode_ == TimeMode::bursts) burst_bits_ = 3 + generator_.below(11);
   slow_moments().begin(generator_, time_mode_ == TimeMode::silence ? 1 + generator_.below(3) : 0);
   faults_asked_for_ = 0;
+  staleness_ = Staleness{};
 }
 
 void SamplingStrategy::learn(const ExecutionSummary& /*summary*/) noexcept {
@@ -99,6 +100,25 @@ std::size_t SamplingStrategy::strike(FaultKind kind, std::size_t variants_count)
 
 std::size_t SamplingStrategy::answer(std::size_t count) noexcept {
   return generator_.below(static_cast<std::uint32_t>(count));
+}
+
+std::size_t SamplingStrategy::choose_age(const AgeChoice& choice) noexcept {
+  if (!staleness_.drawn) {
+    staleness_.drawn = true;
+    staleness_.bits = generator_.below(4) == 0 ? 0 : 1 + generator_.below(4);
+    staleness_.goes_on = generator_.below(2) == 1;
+  }
+  if (staleness_.bits == 0) return 0;
+  if (staleness_.left != 0 && staleness_.task == choice.running) {
+    --staleness_.left;
+    return choice.ages.size() - 1;
+  }
+  if (generator_.bits(staleness_.bits) != 0) return 0;
+  if (staleness_.goes_on && staleness_.left == 0) {
+    staleness_.task = choice.running;
+    staleness_.left = generator_.below(std::uint32_t{1} << (1 + generator_.below(6)));
+  }
+  return 1 + generator_.below(static_cast<std::uint32_t>(choice.ages.size() - 1));
 }
 
 }  // namespace ltsim

@@ -15,6 +15,11 @@
 // What matters. In three executions of four the strategies give their attention to operations on things that
 // several tasks use (SharedThings), as far as the executions before have shown; in the fourth to all.
 //
+// Weak memory. In one execution of four each load sees the latest store; in the others an older one with the same probability, 2^-1
+// to 2^-4, each time that it may, all that it may see alike. Where that is so in half of these, a task that has seen an
+// older store of a place goes on to see it for so many loads, 1 to 64, log-uniformly: a store that becomes visible late is
+// one decision.
+//
 // Faults. Of the kinds that are granted, each is on in three executions of four, and then strikes at places
 // drawn uniformly from its occasions.
 #pragma once
@@ -50,6 +55,7 @@ class SamplingStrategy : public Strategy {
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept final;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept final;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept final;
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept final;
 
  protected:
   enum class TimeMode : std::uint8_t { bursts, silence, clock };
@@ -84,7 +90,16 @@ class SamplingStrategy : public Strategy {
   RandomGenerator generator_{0};
   TimeMode time_mode_ = TimeMode::bursts;
   std::uint32_t clock_turns_left_ = 0;
-  unsigned burst_bits_ = 1;             // mode `bursts`: a slow moment has the probability 2^-bits
+  unsigned burst_bits_ = 1;  // mode `bursts`: a slow moment has the probability 2^-bits
+  struct Staleness {
+    bool drawn =
+        false;  // what follows; only where it is asked for: choices of other executions stay as they were
+    unsigned bits = 0;       // an older store has the probability 2^-bits; 0: it is never seen
+    bool goes_on = false;    // with the same store, for some loads
+    TaskId task = 0;         // whose loads those are
+    std::uint32_t left = 0;  // of them
+  };
+  Staleness staleness_;                 // of this execution
   std::uint32_t faults_asked_for_ = 0;  // in this execution; a bit for each kind, whose places are drawn then
   Experience own_experience_;
   Experience* experience_ = &own_experience_;

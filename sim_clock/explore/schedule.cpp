@@ -12,8 +12,6 @@
 namespace ltsim {
 namespace {
 
-constexpr std::string_view only_memory = "sc";
-
 /// What separates words, and is no part of a line at its ends: a carriage return is one, wherever it stands.
 constexpr std::string_view blanks = " \t\r";
 
@@ -117,6 +115,16 @@ tl::expected<Deviation, std::string> parse_deviation(const std::vector<std::stri
       return tl::unexpected<std::string>("a crash line is: crash TASK before OPERATION OBJECT #N of PROCESS");
     }
     deviation.process = words.back();
+  } else if (kind == "older") {
+    deviation.kind = Deviation::Kind::older;
+    anchor_end = words.size() < 2 ? 0 : words.size() - 2;
+    const auto age = parse_number(words.back());
+    if (anchor_end == 0 || words[anchor_end] != "by" || !age || *age == 0) {
+      return tl::unexpected<std::string>(
+          "an older line is: older TASK before OPERATION OBJECT #N by COUNT, the count of newer stores, from "
+          "1");
+    }
+    deviation.answer = *age;
   } else {
     deviation.kind = Deviation::Kind::choose;
     const auto answer = parse_number(words.back());
@@ -152,6 +160,8 @@ std::string to_string(const Deviation& deviation) {
       return fmt::format("fault     {} {} {}", place, to_string(deviation.fault), deviation.answer);
     case Deviation::Kind::choose:
       return fmt::format("choose    {} {}", place, deviation.answer);
+    case Deviation::Kind::older:
+      return fmt::format("older     {} by {}", place, deviation.answer);
   }
   return {};
 }
@@ -173,7 +183,7 @@ std::string to_string(const Schedule& schedule) {
   const std::string message = one_line(schedule.message);
   std::string text =
       fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", schedule_header, schedule.scenario,
-                  only_memory, schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
+                  to_string(schedule.memory), schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
                   to_string(schedule.outcome), message.empty() ? "" : ": ", message);
   for (const std::string& line : input_lines(schedule)) text += line + "\n";
   for (const Deviation& deviation : schedule.deviations) text += to_string(deviation) + "\n";
@@ -202,8 +212,10 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       if (words.size() != 2) return error("a scenario line names one scenario");
       schedule.scenario = words[1];
     } else if (words.front() == "memory") {
-      if (words.size() != 2 || words[1] != only_memory)
-        return error("the only memory model there is, is \"sc\"");
+      const bool known =
+          words.size() == 2 && (words[1] == to_string(Memory::sc) || words[1] == to_string(Memory::c11));
+      if (!known) return error("a memory line says \"sc\" or \"c11\"");
+      schedule.memory = words[1] == to_string(Memory::sc) ? Memory::sc : Memory::c11;
     } else if (words.front() == "cpu") {
       const bool known =
           words.size() == 2 && (words[1] == to_string(Cpu::many) || words[1] == to_string(Cpu::one_fifo));
@@ -221,7 +233,8 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       if (!record) return error(std::move(record.error()));
       schedule.input.push_back(std::move(*record));
     } else if (words.front() == "switch" || words.front() == "time" || words.front() == "stall" ||
-               words.front() == "fault" || words.front() == "crash" || words.front() == "choose") {
+               words.front() == "fault" || words.front() == "crash" || words.front() == "choose" ||
+               words.front() == "older") {
       auto deviation = parse_deviation(words);
       if (!deviation) return error(std::move(deviation.error()));
       deviation->line = number;
@@ -229,7 +242,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
     } else {
       return error(fmt::format(
           "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, input, switch, "
-          "time, stall, fault, crash, choose",
+          "time, stall, fault, crash, choose, older",
           words.front()));
     }
   }

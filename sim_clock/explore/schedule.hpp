@@ -11,15 +11,17 @@
 //   fault     kernel/main    before sem_post handoff #2             lost-post 1
 //   crash     kernel/main    before sem_post handoff #3             of emulator
 //   choose    kernel/main    asks delay #1                          3
+//   older     kernel/main    before atomic_load segment.flag #2     by 1
 //
 // A scenario that reads an input, as a fuzz target does, has that in its schedule as well, a record a line:
 //   input     "\x02010F604\x0374"
 //
 // The default: the running task goes on until it blocks, then the task with the lowest number that can run; a
 // task that yields lets the next one run; time passes only when nobody can run; the scenario's questions are
-// answered with 0; no fault strikes. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
+// answered with 0; no fault strikes; loads see the latest store. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
 // task itself and lets the others go on. A "fault" line ends with the kind of fault and with the number, from
-// 1, of the way in which it strikes; a "crash" line with the process that is killed there.
+// 1, of the way in which it strikes; a "crash" line with the process that is killed there. An "older" line (memory c11): a load does
+// not see the latest store but one that is so many stores older; a store takes its place before so many that are there.
 //
 // A line is anchored to the step at which its choice was made, by names and not by step numbers: which task,
 // before ("before") or blocked in ("in") which operation on which object, for the how-many-eth time of that
@@ -39,6 +41,7 @@
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/world/cpu.hpp"
 #include "sim_clock/world/fault_kind.hpp"
+#include "sim_clock/world/memory_model.hpp"
 
 namespace ltsim {
 
@@ -46,7 +49,7 @@ namespace ltsim {
 inline constexpr std::string_view schedule_header = "ltsim schedule 1";
 
 struct Deviation {
-  enum class Kind : std::uint8_t { switch_task, pass_time, stall, fault, choose };
+  enum class Kind : std::uint8_t { switch_task, pass_time, stall, fault, choose, older };
 
   Kind kind = Kind::switch_task;
   std::string anchor;                  ///< "kernel/main before sem_wait handoff #2"
@@ -54,8 +57,9 @@ struct Deviation {
   SimTime passes{0};                   ///< pass_time, stall
   FaultKind fault = FaultKind::crash;  ///< fault
   std::string process;                 ///< fault: of a crash, who is killed
-  std::size_t answer = 0;              ///< choose; fault, but for a crash: in which of its ways, from 1
-  std::size_t line = 0;                ///< where it stands in its file, from 1; 0: not from a file
+  /// choose; fault, but for a crash: in which of its ways, from 1; older: how many stores are newer, from 1
+  std::size_t answer = 0;
+  std::size_t line = 0;  ///< where it stands in its file, from 1; 0: not from a file
 
   /// Equal as choices: the line does not matter.
   bool operator==(const Deviation& other) const noexcept {
@@ -72,6 +76,7 @@ struct Schedule {
   std::string scenario;
   OutcomeKind outcome = OutcomeKind::passed;
   std::string message;  ///< of the outcome; one line
+  Memory memory = Memory::sc;
   Cpu cpu = Cpu::many;
   std::vector<std::string> input = {};  ///< records of World::input(); together they are it
   std::vector<Deviation> deviations;

@@ -26,6 +26,7 @@ SearchFilter search_filter(Breadth breadth, const AddressedSchedule& schedule) {
   };
   for (const AddressedDeviation& deviation : schedule) {
     filter.questions[static_cast<std::size_t>(deviation.at.question)] = true;
+    if (deviation.at.question == Question::age) tasks |= task_bit(deviation.at.whose);
     if (deviation.at.question == Question::task)
       tasks |= task_bit(deviation.at.whose) | task_bit(deviation.value);
     if (deviation.at.question != Question::slow_moment) continue;

@@ -38,6 +38,9 @@ class SilenceWatch final : public Strategy {
     return replay_.strike(kind, variants_count);
   }
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override { return replay_.answer(count); }
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override {
+    return replay_.choose_age(choice);
+  }
 
  private:
   void add(SimTime duration, const SlowMomentChoice& choice) {

@@ -1,8 +1,8 @@
 // A strategy makes the choices of an execution; strategies differ in nothing else.
 //
 // Every nondeterminism of a world is a choice on one stream: which task runs, how much time passes although
-// somebody could run, whether a fault strikes, what a scenario asks for. Each has a default (the first task;
-// no time passes; no fault; 0), so that a schedule can be told as the few choices that deviate from it.
+// somebody could run, whether a fault strikes, what a scenario asks for, which store a load of a weak memory sees. Each has
+// a default (the first task; no time passes; no fault; 0; the latest), so that a schedule can be told as the few choices that deviate from it.
 //
 // The choices of an execution follow from its seed and from what the strategy has learned in the executions
 // before it (learn()), and from nothing else: two explorations with equal seeds make equal choices.
@@ -50,6 +50,15 @@ struct SlowMomentChoice {
   std::span<const std::uint64_t> under_way;  ///< as in TaskChoice
 };
 
+/// Which of the stores that a weak memory keeps of one place a load sees, or right after which of them a store takes its
+/// place (Memory::c11 only).
+struct AgeChoice {
+  /// How many stores of the place are newer, by option: at least two, ascending, the first 0.
+  std::span<const std::uint32_t> ages;
+  bool stores = false;  ///< it is a store, which sees nothing
+  TaskId running = 0;   ///< whose operation it is
+};
+
 /// What an execution was like, for strategies that learn.
 struct ExecutionSummary {
   std::uint64_t points = 0;      ///< scheduling points passed
@@ -90,6 +99,9 @@ class Strategy {
   /// @param count  >= 2
   /// @return       0 to count - 1
   [[nodiscard]] virtual std::size_t answer(std::size_t count) noexcept = 0;
+
+  /// @return  index into choice.ages
+  [[nodiscard]] virtual std::size_t choose_age(const AgeChoice& choice) noexcept = 0;
 
   /// Whether the strategy wants to be told each step by performs(). Asked once an execution.
   [[nodiscard]] virtual bool follows_steps() const noexcept { return false; }

@@ -38,6 +38,9 @@ class SwarmStrategy final : public Strategy {
     return current_->strike(kind, variants_count);
   }
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override { return current_->answer(count); }
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override {
+    return current_->choose_age(choice);
+  }
   [[nodiscard]] bool follows_steps() const noexcept override { return current_->follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     current_->performs(task, operation);

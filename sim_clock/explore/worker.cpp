@@ -48,6 +48,7 @@ class Worker {
   Worker(const WorkerOrder& order, SharedProgress& progress)
       : order_(order), bounds_(progress.bounds()), own_(progress.worker(order.number)) {
     answer_position_signal(world_, own_);
+    world_.set_default_memory(order.options.memory);
     world_.set_default_cpu(order.options.cpu);
   }
 

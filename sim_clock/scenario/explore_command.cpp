@@ -58,9 +58,11 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
   const std::string call = as_shell_word(std::string{program});
   if (!failure.has_schedule) {
     // All up to there: what the strategy has learned by then belongs to it.
-    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}{}\n", call,
+    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}{}{}\n", call,
                as_shell_word(failure.schedule.scenario), arguments.strategy, arguments.options.seed,
-               arguments.jobs, failure.execution, arguments.options.cpu == Cpu::many ? "" : " --cpu one-fifo",
+               arguments.jobs, failure.execution,
+               arguments.options.memory == Memory::sc ? "" : " --memory c11",
+               arguments.options.cpu == Cpu::many ? "" : " --cpu one-fifo",
                arguments.options.keep_going ? " --keep-going" : "");
   } else if (written) {
     fmt::print("  replay:  {} replay {}\n", call, as_shell_word(path));
@@ -177,6 +179,15 @@ void add_explore_command(CLI::App& app, Command& chosen) {
           "processors of the machine, unless the scenario says otherwise; one-fifo: one that honours "
           "SCHED_FIFO priorities")
       ->check(CLI::IsMember({std::string{to_string(Cpu::many)}, std::string{to_string(Cpu::one_fifo)}}));
+  command
+      ->add_option_function<std::string>(
+          "--memory",
+          [arguments](const std::string& memory) {
+            arguments->options.memory = memory == to_string(Memory::sc) ? Memory::sc : Memory::c11;
+          },
+          "sc: each load sees the latest store; c11: what C++ allows of atomic operations by their memory "
+          "orders")
+      ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
   command

@@ -23,19 +23,30 @@ using ltsim::Segments;
   ltsim::access_shared(*ltsim::current_task->world, address, bytes, kind, ltsim::code_site(caller));
 }
 
+/// A write outside of segments: where an atomic object was, or is being made.
+[[gnu::noinline]] void unshared_write(const volatile void* address, std::size_t bytes) noexcept {
+  if (ltsim::current_task != nullptr)
+    ltsim::current_task->world->weak_memory().written_plainly(address, bytes);
+}
+
 /// @param caller  the return address of the announcement: it stands in the code under test
 inline void access(const volatile void* address, std::size_t bytes, OperationKind kind,
                    const void* caller) noexcept {
-  if (Segments::contains(address)) [[unlikely]]
+  if (Segments::contains(address)) [[unlikely]] {
     shared_access(address, bytes, kind, caller);
+  } else if (kind == OperationKind::write && ltsim::WeakMemory::is_any_on()) [[unlikely]] {
+    unshared_write(address, bytes);
+  }
 }
 
 /// A range that the compiler copies or fills itself: one scheduling point per eight bytes, all before the
 /// first byte moves.
 inline void access_range(const volatile void* address, std::size_t bytes, OperationKind kind,
                          const void* caller) noexcept {
-  if (!Segments::contains(address)) [[likely]]
+  if (!Segments::contains(address)) [[likely]] {
+    if (kind == OperationKind::write && ltsim::WeakMemory::is_any_on()) unshared_write(address, bytes);
     return;
+  }
   constexpr std::size_t piece = 8;
   for (std::size_t at = 0; at < bytes; at += piece) {
     shared_access(static_cast<const volatile char*>(address) + at, bytes - at < piece ? bytes - at : piece,

@@ -264,6 +264,9 @@ std::string Story::describe(const Deviation& deviation) const {
                          place);
     case Deviation::Kind::choose:
       return fmt::format("{} answered with {}", task == "-" ? place : task + " " + place, deviation.answer);
+    case Deviation::Kind::older:
+      return fmt::format("{} of {} does not take the latest store: {} {} newer", place, task,
+                         deviation.answer, deviation.answer == 1 ? "is" : "are");
   }
   return to_string(deviation);
 }

@@ -286,6 +286,16 @@ std::size_t Scheduler::choose(std::string_view what, std::size_t count) noexcept
   return chosen;
 }
 
+std::size_t Scheduler::choose_age(std::span<const std::uint32_t> ages, bool stores) noexcept {
+  if (in_fair_tail()) [[unlikely]]
+    return 0;
+  ++decisions_;
+  const std::size_t chosen = strategy_->choose_age({.ages = ages, .stores = stores, .running = running_->id});
+  LTSIM_CHECK(chosen < ages.size());
+  mix(ages[chosen]);
+  return chosen;
+}
+
 void Scheduler::leave(Task& self) noexcept {
   Task* const next = next_after_stop();
   if (next != nullptr) {

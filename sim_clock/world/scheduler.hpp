@@ -118,6 +118,9 @@ class Scheduler {
   /// A choice of the scenario: 0 to count - 1.
   [[nodiscard]] std::size_t choose(std::string_view what, std::size_t count) noexcept;
 
+  /// Which store an operation of the running task on weak memory takes. @return index into ages
+  [[nodiscard]] std::size_t choose_age(std::span<const std::uint32_t> ages, bool stores) noexcept;
+
   /// Time was looked at: from now on it matters when it passes.
   void clock_was_read() noexcept { clock_was_read_ = true; }
   /// Whether anybody has looked at time or waited for it in this execution.

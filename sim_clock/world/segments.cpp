@@ -277,6 +277,7 @@ void Segments::go_on(const volatile void* address, const Operation& operation, b
     world_.damages().choose(segments_[index].name, {all_ + (index << window_shift), segments_[index].bytes});
   }
 
+  if (kind == OperationKind::write) world_.weak_memory().written_plainly(address, bytes);
   MemoryChecks& checks = world_.checks();
   if (!checks.on()) return;
   const SharedPlace shared_place = place_of(address);

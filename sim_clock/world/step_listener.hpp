@@ -29,6 +29,9 @@ class StepListener {
   virtual void ends(const Task& task) noexcept = 0;
   /// The scenario asks for a value, in a task or (null) outside; the choice follows.
   virtual void asks(const Task* task, std::string_view what) noexcept = 0;
+  /// The operation that `task` performs, on a weak memory, has not taken the latest store: it has found `value`, or stored it
+  /// there, where so many stores of that place are newer.
+  virtual void older(const Task& /*task*/, std::uint64_t /*value*/, std::uint32_t /*age*/) noexcept {}
   /// A remark of the scenario or of its checks.
   virtual void notes(std::string_view text) noexcept = 0;
 

@@ -45,6 +45,7 @@ void Process::died(std::optional<SimTime> restart_after) {
   for (const Start& start : starts_) {
     Task& task = world_.scheduler().create_task(id_, start.task, start.body);
     world_.scheduler().delay_start(task, begin_);
+    world_.weak_memory().starts_again(task.id);
     for (std::size_t i = 0; i < tasks_before; ++i) {
       const Task& dead = world_.scheduler().task(static_cast<TaskId>(i));
       if (dead.process == id_) world_.checks().follows(task.id, dead.id);
@@ -168,6 +169,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   objects_.reset();
   segments_.reset();
   checks_.reset();
+  weak_.reset();
+  if (default_memory_ == Memory::c11) set_memory(Memory::c11);
   semaphores_.reset();
   mutexes_.reset();
   faults_.reset();
@@ -175,6 +178,17 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   fetches_.reset();
   written_first_.reset();
   processes_count_ = 0;
+}
+
+void World::set_memory(Memory memory) {
+  if (memory == this->memory()) return;
+  if (scheduler_.tasks_count() != 0 || memory == Memory::sc) {
+    unsupported(memory == Memory::sc ? "a scenario for memory sc alone: it was asked to run with c11"
+                                     : "World::set_memory() after a task was made");
+    return;
+  }
+  weak_.turn_on();
+  checks_.follow_order();
 }
 
 void World::unsupported(std::string what) {

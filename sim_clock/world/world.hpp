@@ -31,12 +31,14 @@
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
+#include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/semaphores.hpp"
 #include "sim_clock/world/threads.hpp"
+#include "sim_clock/world/weak_memory.hpp"
 
 namespace ltsim {
 
@@ -207,6 +209,10 @@ class World {
   /// Which processors the simulated machine has in this execution.
   void set_cpu(Cpu cpu) noexcept { scheduler_.set_cpu(cpu); }
 
+  /// Which orders of memory accesses this execution shows. Before the first task is made.
+  void set_memory(Memory memory);
+  [[nodiscard]] Memory memory() const noexcept { return weak_.on() ? Memory::c11 : Memory::sc; }
+
   /// What `task` ("process/name") is blocked in, or nothing if it is not blocked. Of a process that was started
   /// again it is the task of its latest life.
   /// @return e.g. "sem_wait handoff"
@@ -234,6 +240,8 @@ class World {
   /// Which processors the machine has in the executions from the next one on, unless their scenario says
   /// otherwise. Cpu::many at first.
   void set_default_cpu(Cpu cpu) noexcept { default_cpu_ = cpu; }
+  /// The same for memory; Memory::sc at first.
+  void set_default_memory(Memory memory) noexcept { default_memory_ = memory; }
   /// An execution that has passed up to here still fails if there was a race, or else if a mutex is held.
   void end_execution() noexcept;
 
@@ -256,6 +264,7 @@ class World {
   [[nodiscard]] const ObjectNames& objects() const noexcept { return objects_; }
   [[nodiscard]] Segments& segments() noexcept { return segments_; }
   [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
+  [[nodiscard]] WeakMemory& weak_memory() noexcept { return weak_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
@@ -322,6 +331,7 @@ class World {
   ObjectNames objects_;
   Segments segments_{*this};
   MemoryChecks checks_{segments_.memory()};
+  WeakMemory weak_{*this};
   Semaphores semaphores_{*this};
   Mutexes mutexes_{*this};
   Threads threads_{*this};
@@ -333,6 +343,7 @@ class World {
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
   Cpu default_cpu_ = Cpu::many;
+  Memory default_memory_ = Memory::sc;
   std::vector<std::string> input_records_;
   std::string input_;
   std::uint64_t execution_number_ = 0;

@@ -24,6 +24,7 @@ class DefaultStrategy : public Strategy {
     return 0;
   }
   [[nodiscard]] std::size_t answer(std::size_t /*count*/) noexcept override { return 0; }
+  [[nodiscard]] std::size_t choose_age(const AgeChoice& /*choice*/) noexcept override { return 0; }
 };
 
 inline void PrintTo(const Outcome& outcome, std::ostream* out) {

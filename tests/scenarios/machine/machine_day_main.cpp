@@ -73,6 +73,7 @@ class DefaultOrder final : public ltsim::Strategy {
     return 0;
   }
   [[nodiscard]] std::size_t answer(std::size_t /*count*/) noexcept override { return 0; }
+  [[nodiscard]] std::size_t choose_age(const ltsim::AgeChoice& /*choice*/) noexcept override { return 0; }
 };
 
 struct Arguments {
