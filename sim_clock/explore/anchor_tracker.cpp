@@ -45,6 +45,10 @@ void AnchorTracker::ends(const Task& task) noexcept {
   if (next_ != nullptr) next_->ends(task);
 }
 
+void AnchorTracker::older(const Task& task, const OlderStore& taken) noexcept {
+  if (next_ != nullptr) next_->older(task, taken);
+}
+
 void AnchorTracker::asks(const Task* task, std::string_view what) noexcept {
   stand_at(fmt::format("{} asks {}", task == nullptr ? "-" : task->name, what));
   if (next_ != nullptr) next_->asks(task, what);

@@ -33,6 +33,7 @@ class AnchorTracker final : public StepListener {
   void held_up(const Task& task, SimTime duration) noexcept override;
   void goes_on(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
+  void older(const Task& task, const OlderStore& taken) noexcept override;
   void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;
 

@@ -49,6 +49,11 @@ std::string_view verb(OperationKind kind) noexcept {
   return changes_memory(kind) ? "writes" : "reads";
 }
 
+/// "1 store is", "2 stores are"
+std::string newer_stores(std::size_t count) {
+  return fmt::format("{} store{}", count, count == 1 ? " is" : "s are");
+}
+
 }  // namespace
 
 Story::Story(World& world, const Schedule& schedule)
@@ -89,6 +94,8 @@ void Story::performs(const Task& task, const Operation& operation) noexcept {
       if (event.writer != task.id) events_[last->second].is_read_by_other = true;
     }
     if (changes_memory(operation.kind)) {
+      before_last_write_.reset();
+      if (last != last_write_.end()) before_last_write_ = last->second;
       for (std::uint64_t byte = 0; byte < operation.bytes; ++byte) last_write_[begin + byte] = events_.size();
       write_is_unfinished_ = true;
       unfinished_write_ = events_.size();
@@ -122,6 +129,26 @@ void Story::ends(const Task& task) noexcept {
   finish_write();
   anchors_.ends(task);
   stand_here(task.id);
+}
+
+void Story::older(const Task& /*task*/, const OlderStore& taken) noexcept {
+  Event& event = events_.back();
+  const Operation& operation = event.operation;
+  event.before = taken.found;
+  event.after = taken.stored;
+  event.newer_count = taken.newer_count;
+  if (operation.kind != OperationKind::atomic_store) event.writer = taken.writer;
+  if (!write_is_unfinished_) return;
+  // What memory holds goes on to be another's.
+  write_is_unfinished_ = false;
+  const std::uint64_t begin = std::uint64_t{operation.object} << 32U | operation.offset;
+  for (std::uint64_t byte = 0; byte < operation.bytes; ++byte) {
+    if (before_last_write_) {
+      last_write_[begin + byte] = *before_last_write_;
+    } else {
+      last_write_.erase(begin + byte);
+    }
+  }
 }
 
 void Story::asks(const Task* task, std::string_view what) noexcept {
@@ -265,8 +292,10 @@ std::string Story::describe(const Deviation& deviation) const {
     case Deviation::Kind::choose:
       return fmt::format("{} answered with {}", task == "-" ? place : task + " " + place, deviation.answer);
     case Deviation::Kind::older:
-      return fmt::format("{} of {} does not take the latest store: {} {} newer", place, task,
-                         deviation.answer, deviation.answer == 1 ? "is" : "are");
+      return fmt::format("{} {} {}: {} newer", task,
+                         place.find(" atomic_store ") == std::string::npos ? "does not see the latest store"
+                                                                           : "comes before others",
+                         place, newer_stores(deviation.answer));
   }
   return to_string(deviation);
 }
@@ -306,8 +335,16 @@ std::string Story::describe(const Line& line) const {
     if (values > values_max) text += " ...";
   }
   if (!is_row && line.events.size() > 1) text += fmt::format(", {} times", line.events.size());
-  if (event.writer != nobody && event.writer != event.task)
+  if (event.newer_count != 0) {
+    const bool only_stores = event.operation.kind == OperationKind::atomic_store;
+    const std::string origin = only_stores ? std::string{}
+                               : event.writer == nobody
+                                   ? std::string{"it was there at first; "}
+                                   : world_.scheduler().task(event.writer).name + " wrote that; ";
+    text += fmt::format("   ({}{} newer)", origin, newer_stores(event.newer_count));
+  } else if (event.writer != nobody && event.writer != event.task) {
     text += fmt::format("   ({} wrote that)", world_.scheduler().task(event.writer).name);
+  }
   return fmt::format("{:>14.3f}us  {:<18} {:<8} {}\n", us, task, verb(event.operation.kind), text);
 }
 

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -44,6 +45,7 @@ class Story final : public StepListener {
   void held_up(const Task& task, SimTime duration) noexcept override;
   void goes_on(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
+  void older(const Task& task, const OlderStore& taken) noexcept override;
   void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;
 
@@ -61,7 +63,8 @@ class Story final : public StepListener {
     Operation operation{};
     std::uint64_t before = 0;
     std::uint64_t after = 0;
-    std::size_t text = 0;  // index: of a note in notes_, of a deviation in the schedule
+    std::uint32_t newer_count = 0;  // stores of a weak memory that are newer than what it found or stored
+    std::size_t text = 0;           // index: of a note in notes_, of a deviation in the schedule
   };
   /// One line to be: steps of the same kind in a row are told together.
   struct Line {
@@ -87,7 +90,9 @@ class Story final : public StepListener {
   std::vector<Event> events_;
   std::vector<std::string> notes_;
   std::map<std::uint64_t, std::size_t> last_write_;  // by byte: index of the event
-  bool write_is_unfinished_ = false;                 // that of the last event of all that is a step
+  std::optional<std::size_t>
+      before_last_write_;             // of the last event of all that writes: whose bytes it has taken
+  bool write_is_unfinished_ = false;  // that of the last event of all that is a step
   std::size_t unfinished_write_ = 0;
 };
 

@@ -34,6 +34,17 @@ void TextTrace::ends(const Task& task) noexcept {
   line(task.name, "ends", "");
 }
 
+void TextTrace::older(const Task& /*task*/, const OlderStore& taken) noexcept {
+  const bool reads_only = !write_is_unfinished_;
+  write_is_unfinished_ = false;
+  // The line of the step ends with what memory holds, if it has a value at all.
+  const std::size_t line = text_.rfind('\n', text_.size() - 2) + 1;
+  const std::size_t value = reads_only ? text_.find(" = ", line) : std::string::npos;
+  if (value != std::string::npos) text_.erase(value, text_.size() - 1 - value);
+  text_.insert(text_.size() - 1, fmt::format(" {} {} (newer stores: {})", reads_only ? "=" : ":=",
+                                             reads_only ? taken.found : taken.stored, taken.newer_count));
+}
+
 void TextTrace::asks(const Task* task, std::string_view what) noexcept {
   finish_write();
   line(task == nullptr ? "" : task->name, "asks", what);

@@ -25,6 +25,7 @@ class TextTrace final : public StepListener {
   void performs(const Task& task, const Operation& operation) noexcept override;
   void blocks(const Task& task) noexcept override;
   void ends(const Task& task) noexcept override;
+  void older(const Task& task, const OlderStore& taken) noexcept override;
   void asks(const Task* task, std::string_view what) noexcept override;
   void notes(std::string_view text) noexcept override;
 

@@ -11,6 +11,14 @@ namespace ltsim {
 
 struct Task;
 
+/// What an operation came to that found an older store, or has stored something where newer stores are.
+struct OlderStore {
+  std::uint64_t found = 0;                ///< by a load or an update
+  std::uint64_t stored = 0;               ///< by a store or an update; of what only loads, what it found
+  TaskId writer = VirtualClock::no_task;  ///< of what was found; no_task: it was there at first
+  std::uint32_t newer_count = 0;          ///< stores of that place that are newer
+};
+
 class StepListener {
  public:
   virtual ~StepListener() = default;
@@ -29,9 +37,8 @@ class StepListener {
   virtual void ends(const Task& task) noexcept = 0;
   /// The scenario asks for a value, in a task or (null) outside; the choice follows.
   virtual void asks(const Task* task, std::string_view what) noexcept = 0;
-  /// The operation that `task` performs, on a weak memory, has not taken the latest store: it has found `value`, or stored it
-  /// there, where so many stores of that place are newer.
-  virtual void older(const Task& /*task*/, std::uint64_t /*value*/, std::uint32_t /*age*/) noexcept {}
+  /// The operation that `task` performs, on a weak memory, has not taken the latest store.
+  virtual void older(const Task& /*task*/, const OlderStore& /*taken*/) noexcept {}
   /// A remark of the scenario or of its checks.
   virtual void notes(std::string_view text) noexcept = 0;
 

@@ -71,10 +71,17 @@ WeakMemory::Result WeakMemory::access(const Access& access) {
     chosen = world_.scheduler().choose_age(ages_, access.kind == AtomicAccess::store);
   }
   const Option option = options_[chosen];
+  const TaskId writer = location.stores[location.stores.size() - 1 - option.age].writer;
   const Result result = carry_out(location, access, self.id, option);
   if (option.age != 0 && world_.scheduler().listener() != nullptr) {
-    world_.scheduler().listener()->older(
-        self, access.kind == AtomicAccess::store ? access.operand : result.found, option.age);
+    const std::uint64_t stored = !result.stored ? result.found
+                                 : access.kind == AtomicAccess::store
+                                     ? access.operand
+                                     : access.change(result.found, access.operand);
+    world_.scheduler().listener()->older(self, {.found = result.found,
+                                                .stored = stored & mask_of(access.bytes),
+                                                .writer = writer,
+                                                .newer_count = option.age});
   }
   return result;
 }
@@ -167,6 +174,7 @@ WeakMemory::Result WeakMemory::carry_out(Location& location, const Access& acces
   made.value =
       (loads ? access.change(result.found, access.operand) : access.operand) & mask_of(location.bytes);
   made.number = stores_ever_++;
+  made.writer = task;
   made.is_update = loads;
   made.of_store = events;
   made.after = own;

@@ -74,6 +74,7 @@ class WeakMemory {
   struct Store {
     std::uint64_t value = 0;
     std::uint64_t number = 0;  // in the order of execution
+    TaskId writer = VirtualClock::no_task;
     HappensBefore::HandedOver handed_over = HappensBefore::nothing;
     bool is_update = false;  // reads the store before it: nothing comes between
     // Sets of events of the seq_cst order: itself if it is one, and fences before it; the same of the loads that saw it; and

@@ -24,6 +24,7 @@ stall     emulator/main    before atomic_store segment.state #1         +1500us
 choose    -                asks delay #1                                7
 fault     kernel/main      before sem_post handoff #2                   lost-post 1
 crash     kernel/main      before sem_post handoff #3                   of emulator
+older     kernel/main      before atomic_load segment.state #4          by 2
 )";
 
 TEST(Schedule, reads_every_kind_of_line) {
@@ -33,7 +34,7 @@ TEST(Schedule, reads_every_kind_of_line) {
   EXPECT_EQ(schedule->outcome, OutcomeKind::invariant);
   EXPECT_EQ(schedule->message, "I1: the answer to request 1 was delivered for request 2");
   const auto& lines = schedule->deviations;
-  ASSERT_EQ(lines.size(), 9U);
+  ASSERT_EQ(lines.size(), 10U);
   EXPECT_EQ(lines[0].anchor, "- start");
   EXPECT_EQ(lines[1].anchor, "kernel/main before atomic_load segment.state #3");
   EXPECT_EQ(lines[1].to_task, "emulator/main");
@@ -51,6 +52,8 @@ TEST(Schedule, reads_every_kind_of_line) {
   EXPECT_EQ(lines[8].fault, FaultKind::crash);
   EXPECT_EQ(lines[8].anchor, "kernel/main before sem_post handoff #3");
   EXPECT_EQ(lines[8].process, "emulator");
+  EXPECT_EQ(lines[9].kind, Deviation::Kind::older);
+  EXPECT_EQ(lines[9].answer, 2U);
 }
 
 TEST(Schedule, what_was_written_reads_back_equal) {
@@ -161,7 +164,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadSchedule{"unknown_word", HEAD "swich a to b\n", 3, "swich"},
         BadSchedule{"unknown_outcome", HEAD "outcome lost\n", 3, "lost"},
         BadSchedule{"unknown_cpu", HEAD "cpu two\n", 3, "one-fifo"},
-        BadSchedule{"unknown_memory", HEAD "memory c11\n", 3, "sc"},
+        BadSchedule{"unknown_memory", HEAD "memory tso\n", 3, "c11"},
+        BadSchedule{"older_by_nothing", HEAD "older a/b before read x #1 by 0\n", 3, "by COUNT"},
+        BadSchedule{"older_without_by", HEAD "older a/b before read x #1 2\n", 3, "by COUNT"},
         BadSchedule{"switch_to_nowhere", HEAD "switch a/b before read x #1\n", 3, "switch TASK before"},
         BadSchedule{"no_occurrence", HEAD "switch a/b before read x to c/d\n", 3, "#N"},
         BadSchedule{"bad_occurrence", HEAD "switch a/b before read x #1x to c/d\n", 3, "#N"},
