@@ -47,7 +47,11 @@ std::uint64_t Explorer::execute(const Scenario& scenario, Strategy& strategy, st
                                 StepListener* listener) {
   strategy.begin_execution(seed);
   world_.reset(strategy, listener);
-  scenario.body(world_);
+  try {
+    scenario.body(world_);
+  } catch (const World::Abandoned&) {
+    // It has ended where the strategy let it end.
+  }
   world_.end_execution();
   if (world_.scheduler().run_is_missing()) {
     throw NotSimulable{fmt::format("{} makes tasks and never calls World::run()", scenario.name)};

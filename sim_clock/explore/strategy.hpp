@@ -103,10 +103,16 @@ class Strategy {
   /// @return  index into choice.ages
   [[nodiscard]] virtual std::size_t choose_age(const AgeChoice& choice) noexcept = 0;
 
+  /// Whether scheduling points take virtual time. Asked once an execution.
+  [[nodiscard]] virtual bool points_cost_time() const noexcept { return true; }
   /// Whether the strategy wants to be told each step by performs(). Asked once an execution.
   [[nodiscard]] virtual bool follows_steps() const noexcept { return false; }
   /// `task` goes on and performs `operation`, whether or not there was a choice.
   virtual void performs(TaskId /*task*/, const Operation& /*operation*/) noexcept {}
+  /// `task` goes on with its operation, which it had to wait in.
+  virtual void resumes(TaskId /*task*/, const Operation& /*operation*/) noexcept {}
+  /// What the running task performs has turned out to be nothing but a look: it found what others have made, or failed.
+  virtual void only_looked() noexcept {}
 
  protected:
   Strategy() = default;

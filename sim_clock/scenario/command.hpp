@@ -38,6 +38,7 @@ void add_fuzz_command(CLI::App& app, Command& chosen);
 void add_list_command(CLI::App& app, Command& chosen);
 void add_explore_command(CLI::App& app, Command& chosen);
 void add_minimize_command(CLI::App& app, Command& chosen);
+void add_prove_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);
 void add_zoo_command(CLI::App& app, Command& chosen);
 

@@ -19,6 +19,7 @@ int run_command_line(int argc, const char* const* argv) {
   Command chosen;
   add_list_command(app, chosen);
   add_explore_command(app, chosen);
+  add_prove_command(app, chosen);
   add_replay_command(app, chosen);
   add_minimize_command(app, chosen);
   add_zoo_command(app, chosen);

@@ -63,8 +63,8 @@ const Scenario* find_scenario(std::string_view name) {
 }
 
 ScenarioRegistration::ScenarioRegistration(std::string_view name, std::string_view description,
-                                           void (*body)(World&)) {
-  add(name, description, body);
+                                           std::function<void(World&)> body) {
+  add(name, description, std::move(body));
 }
 
 }  // namespace ltsim

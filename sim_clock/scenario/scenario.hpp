@@ -32,7 +32,8 @@ struct Scenario {
 
 /// Adds a scenario before main(). A name given twice ends the program with exit code 2.
 struct ScenarioRegistration {
-  ScenarioRegistration(std::string_view name, std::string_view description, void (*body)(World&));
+  /// @param name, description  outlive the program's scenarios
+  ScenarioRegistration(std::string_view name, std::string_view description, std::function<void(World&)> body);
 };
 
 }  // namespace ltsim

@@ -20,15 +20,18 @@ using ltsim::WeakMemory;
 
 /// @param caller  return address of the operation: it stands in the code under test
 /// @return        whether a simulated task is about to perform the operation
-bool point(const volatile void* address, std::size_t bytes, OperationKind kind, const void* caller) noexcept {
+bool point(const volatile void* address, std::size_t bytes, OperationKind kind, int order,
+           const void* caller) noexcept {
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return false;
   if (Segments::contains(address)) {
-    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
+    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller),
+                         ltsim::is_seq_cst(order));
   } else {
     self->world->scheduler().point(
         {.kind = kind,
          .bytes = static_cast<std::uint8_t>(bytes),
+         .is_seq_cst = ltsim::is_seq_cst(order),
          .offset = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address)),
          .site = ltsim::code_site(caller)});
   }
@@ -72,9 +75,14 @@ WeakMemory::Result perform_weakly(const WeakMemory::Access& access, const void* 
 }
 
 /// A task whose exchange fails again and again waits for others.
+void failed_if(bool failed) noexcept {
+  ltsim::current_task->update_failed = failed;
+  if (failed) ltsim::current_task->world->scheduler().only_looked();
+}
+
 int exchanged(const volatile void* address, std::size_t bytes, bool success, int order, int failure_order,
               const void* caller) noexcept {
-  if (ltsim::current_task != nullptr) ltsim::current_task->update_failed = !success;
+  if (ltsim::current_task != nullptr) failed_if(!success);
   performed(address, bytes, success ? AtomicAccess::update : AtomicAccess::load,
             success ? order : failure_order, caller);
   return success ? 1 : 0;
@@ -84,6 +92,9 @@ void fence(int order) noexcept {
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return;
   if (self->world->weak_memory().on()) {
+    // What a seq_cst fence orders depends on those that come before it; any other is a matter of its task alone.
+    if (ltsim::is_seq_cst(order))
+      self->world->scheduler().point({.kind = OperationKind::atomic_fence, .is_seq_cst = true});
     self->world->weak_memory().fence(self->id, order);
   } else {
     self->world->checks().fence(self->id, order);
@@ -103,7 +114,7 @@ std::uint64_t nands(std::uint64_t found, std::uint64_t operand) { return ~(found
 template <typename Type>
 int compare_exchange(volatile Type* p, Type* expected, Type desired, int order, int failure_order,
                      const void* caller) noexcept {
-  point(p, sizeof(Type), OperationKind::atomic_update, caller);
+  point(p, sizeof(Type), OperationKind::atomic_update, order, caller);
   if (is_weak()) [[unlikely]] {
     const auto result = perform_weakly({.address = p,
                                         .bytes = sizeof(Type),
@@ -114,7 +125,7 @@ int compare_exchange(volatile Type* p, Type* expected, Type desired, int order, 
                                         .operand = desired,
                                         .change = exchanges},
                                        caller);
-    ltsim::current_task->update_failed = !result.stored;
+    failed_if(!result.stored);
     if (!result.stored) *expected = static_cast<Type>(result.found);
     return result.stored ? 1 : 0;
   }
@@ -130,7 +141,7 @@ int compare_exchange(volatile Type* p, Type* expected, Type desired, int order, 
 #define LTSIM_ATOMIC_UPDATE(bits, type, name, builtin, kind_of_point, makes)              \
   extern "C" type __tsan_atomic##bits##_##name(volatile type* p, type value, int order) { \
     const void* const caller = __builtin_return_address(0);                               \
-    point(p, sizeof(type), OperationKind::kind_of_point, caller);                         \
+    point(p, sizeof(type), OperationKind::kind_of_point, order, caller);                  \
     if (is_weak()) [[unlikely]]                                                           \
       return static_cast<type>(perform_weakly({.address = p,                              \
                                                .bytes = sizeof(type),                     \
@@ -155,7 +166,7 @@ int compare_exchange(volatile Type* p, Type* expected, Type desired, int order, 
 #define LTSIM_ATOMICS(bits, type)                                                                           \
   extern "C" type __tsan_atomic##bits##_load(const volatile type* p, int order) {                           \
     const void* const caller = __builtin_return_address(0);                                                 \
-    point(p, sizeof(type), OperationKind::atomic_load, caller);                                             \
+    point(p, sizeof(type), OperationKind::atomic_load, order, caller);                                      \
     if (is_weak()) [[unlikely]]                                                                             \
       return static_cast<type>(perform_weakly({.address = p,                                                \
                                                .bytes = sizeof(type),                                       \
@@ -170,7 +181,7 @@ int compare_exchange(volatile Type* p, Type* expected, Type desired, int order, 
   }                                                                                                         \
   extern "C" void __tsan_atomic##bits##_store(volatile type* p, type value, int order) {                    \
     const void* const caller = __builtin_return_address(0);                                                 \
-    const bool alone = point(p, sizeof(type), OperationKind::atomic_store, caller);                         \
+    const bool alone = point(p, sizeof(type), OperationKind::atomic_store, order, caller);                  \
     if (is_weak()) [[unlikely]] {                                                                           \
       perform_weakly({.address = p,                                                                         \
                       .bytes = sizeof(type),                                                                \
@@ -208,6 +219,6 @@ LTSIM_ATOMICS(16, std::uint16_t)
 LTSIM_ATOMICS(32, std::uint32_t)
 LTSIM_ATOMICS(64, std::uint64_t)
 
-// A fence is no scheduling point: what it orders, it orders wherever the others stand.
+// Where memory is sequentially consistent a fence is no scheduling point.
 extern "C" void __tsan_atomic_thread_fence(int order) { fence(order); }
 extern "C" void __tsan_atomic_signal_fence(int /*order*/) {}

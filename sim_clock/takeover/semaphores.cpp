@@ -21,7 +21,8 @@ extern "C" sem_t* sem_open(const char* name, int flags, ...) noexcept {
     va_end(arguments);
   }
   if (current_task != nullptr) {
-    current_task->world->scheduler().point({.kind = ltsim::OperationKind::sem_open});
+    current_task->world->scheduler().point(
+        {.kind = ltsim::OperationKind::sem_open, .name = ltsim::name_hash(name)});
     return current_task->world->semaphores().open(name, flags, value);
   }
   if (ltsim::World::refuses_real("sem_open")) return SEM_FAILED;

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <initializer_list>
+#include <string_view>
 
 #include "sim_clock/takeover/next.hpp"
 #include "sim_clock/world/world.hpp"
@@ -22,7 +23,10 @@ using ltsim::Segments;
 
 namespace {
 
-void point(OperationKind kind) noexcept { current_task->world->scheduler().point({.kind = kind}); }
+/// @param name  of what is opened or unlinked, or of what the descriptor is of
+void point(OperationKind kind, std::string_view name) noexcept {
+  current_task->world->scheduler().point({.kind = kind, .name = ltsim::name_hash(name)});
+}
 
 /// Whether a granted fault makes the call fail; errno is then one of `errors`.
 bool fails(std::initializer_list<int> errors) noexcept {
@@ -37,32 +41,36 @@ bool is_simulated(int descriptor) noexcept {
   return current_task != nullptr && Segments::is_descriptor(descriptor);
 }
 
+std::string_view name_of(int descriptor) noexcept {
+  return current_task->world->segments().name_of(descriptor);
+}
+
 }  // namespace
 
 extern "C" int shm_open(const char* name, int flags, mode_t mode) {
   if (current_task == nullptr)
     return ltsim::World::refuses_real("shm_open") ? -1 : LTSIM_NEXT(shm_open)(name, flags, mode);
-  point(OperationKind::shm_open);
+  point(OperationKind::shm_open, name);
   if (fails({EACCES, EMFILE, ENFILE})) return -1;  // shm_open(3)
   return current_task->world->segments().open(name, flags);
 }
 
 extern "C" int shm_unlink(const char* name) {
   if (current_task == nullptr) return LTSIM_NEXT(shm_unlink)(name);
-  point(OperationKind::shm_unlink);
+  point(OperationKind::shm_unlink, name);
   return current_task->world->segments().unlink(name);
 }
 
 extern "C" int ftruncate(int descriptor, off_t bytes) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(ftruncate)(descriptor, bytes);
-  point(OperationKind::shm_resize);
+  point(OperationKind::shm_resize, name_of(descriptor));
   if (fails({EINTR, EFBIG, EIO})) return -1;  // ftruncate(2)
   return current_task->world->segments().resize(descriptor, bytes);
 }
 
 extern "C" int fstat(int descriptor, struct stat* into) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(fstat)(descriptor, into);
-  point(OperationKind::shm_status);
+  point(OperationKind::shm_status, name_of(descriptor));
   return current_task->world->segments().status(descriptor, *into);
 }
 
@@ -89,7 +97,7 @@ extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flag
                       off_t offset) noexcept {
   if (!is_simulated(descriptor))
     return LTSIM_NEXT(mmap)(address, bytes, protection, flags, descriptor, offset);
-  point(OperationKind::shm_map);
+  point(OperationKind::shm_map, name_of(descriptor));
   if (fails({EAGAIN, ENFILE, ENOMEM})) return MAP_FAILED;  // mmap(2)
   return current_task->world->segments().map(bytes, protection, flags, descriptor, offset);
 }
@@ -97,7 +105,7 @@ extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flag
 extern "C" int munmap(void* address, std::size_t bytes) noexcept {
   if (!Segments::contains(address)) return LTSIM_NEXT(munmap)(address, bytes);
   if (current_task == nullptr) return 0;
-  point(OperationKind::shm_unmap);
+  point(OperationKind::shm_unmap, {});
   return current_task->world->segments().unmap(address, bytes);
 }
 

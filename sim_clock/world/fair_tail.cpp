@@ -31,6 +31,7 @@ void Scheduler::pass_fair_tail(Task& task, const Operation& operation) noexcept 
     fail(OutcomeKind::livelock,
          fmt::format("{} scheduling points and no end; {}", points_max_, describe_livelock(world_)));
   }
+  clock_.pass(point_cost - point_cost_);  // also where points cost nothing a loop that polls a clock ends
   // Of all that a task does again and again the same one is kept, wherever in its loop the tail begins and ends.
   // Addresses outside of segments are no part of that: they differ from run to run.
   const auto keep_least = [&](std::optional<Operation>& kept) {

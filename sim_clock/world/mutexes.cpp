@@ -104,7 +104,10 @@ int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
     state_changed(state);
     return 0;
   }
-  if (state.owner_plus_one != 0) return EBUSY;
+  if (state.owner_plus_one != 0) {
+    world_.scheduler().only_looked();
+    return EBUSY;
+  }
   return take(state, mutex);
 }
 

@@ -84,6 +84,8 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "sleep";
     case OperationKind::yield:
       return "yield";
+    case OperationKind::atomic_fence:
+      return "atomic_fence";
   }
   return "?";
 }

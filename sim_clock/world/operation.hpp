@@ -49,6 +49,7 @@ enum class OperationKind : std::uint8_t {
   clock_read,
   sleep,
   yield,
+  atomic_fence,
 };
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
@@ -88,7 +89,11 @@ using ObjectId = std::uint32_t;
 struct Operation {
   OperationKind kind = OperationKind::read;
   std::uint8_t bytes = 0;  ///< of a memory access, 1 to 16
-  ObjectId object = 0;     ///< what it acts on
+  /// Of what opens or unlinks an object by name, which is not known as one yet: a hash of that name, so that some that have
+  /// nothing to do with each other can be told apart; 0 = no name.
+  std::uint8_t name = 0;
+  bool is_seq_cst = false;  ///< an atomic operation or a fence of that memory order
+  ObjectId object = 0;      ///< what it acts on
   /// Of a memory access in a segment: the byte. Of what has no object: the low half of the address, which tells
   /// places apart and means nothing in another run; 0 = nothing in particular.
   std::uint32_t offset = 0;
@@ -100,6 +105,15 @@ struct Operation {
     return kind == other.kind && bytes == other.bytes && object == other.object && offset == other.offset;
   }
 };
+
+/// Of a POSIX name, with or without its '/', for Operation::name: 1 to 255; 0 of an empty one.
+[[nodiscard]] constexpr std::uint8_t name_hash(std::string_view name) noexcept {
+  if (name.starts_with('/')) name.remove_prefix(1);
+  if (name.empty()) return 0;
+  std::uint32_t hash = 2166136261U;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  return static_cast<std::uint8_t>(1 + hash % 255);
+}
 
 /// Whether the order of the two can matter to anybody: they act on the same thing, and one changes it.
 /// Operations that act on nothing in particular (clocks, sleeping) depend on nothing.

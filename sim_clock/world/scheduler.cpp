@@ -18,6 +18,7 @@ constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]] = n
 void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   strategy_ = &strategy;
   strategy_follows_steps_ = strategy.follows_steps();
+  point_cost_ = strategy.points_cost_time() ? point_cost : SimTime{0};
   listener_ = listener;
   running_ = nullptr;
   clock_.reset();
@@ -47,6 +48,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   cpu_ = Cpu::many;
   ready_ever_ = 0;
   steps_are_checked_ = false;
+  is_abandoned_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
@@ -188,7 +190,7 @@ void Scheduler::point(Operation operation) noexcept {
   // What follows looks at the copy: a parameter with an address would be written to the stack and read back at once.
   Operation& pending = pending_[self.id];
   pending = operation;
-  clock_.pass(point_cost);
+  clock_.pass(point_cost_);
   ++points_;
   bool fair_tail = in_fair_tail();
   if (fair_tail) [[unlikely]]
@@ -251,6 +253,7 @@ Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
   Task* const next = next_after_stop();
   if (next != &self) switch_to(*next);
   under_way_[self.id / 64] &= ~bit;
+  if (strategy_follows_steps_) strategy_->resumes(self.id, pending_[self.id]);
   return self.timed_out ? Wake::timed_out : Wake::signalled;
 }
 
@@ -316,6 +319,11 @@ void Scheduler::fail(OutcomeKind kind, std::string message) {
   running_ = nullptr;
   Context::switch_between(self.context, main_context_);
   LTSIM_UNREACHABLE("a task of a failed execution was resumed");
+}
+
+void Scheduler::abandon() noexcept {
+  is_abandoned_ = true;
+  fail(OutcomeKind::passed, {});
 }
 
 Task* Scheduler::next_after_stop() noexcept {

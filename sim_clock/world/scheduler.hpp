@@ -93,6 +93,11 @@ class Scheduler {
   /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
   void point(Operation operation) noexcept;
 
+  /// What the running task performs has turned out to change nothing for anybody.
+  void only_looked() noexcept {
+    if (strategy_follows_steps_) strategy_->only_looked();
+  }
+
   enum class Wake : std::uint8_t { signalled, timed_out };
   /// Blocks the running task until wake() for `key`, or until `deadline` (VirtualClock::never: no limit).
   Wake block(WaitKey key, Deadline deadline) noexcept;
@@ -130,6 +135,10 @@ class Scheduler {
 
   /// Ends the execution with this outcome; the first one counts. Inside a task it does not return.
   void fail(OutcomeKind kind, std::string message);
+
+  /// Ends the execution, which the strategy is not interested in any more. Inside a task it does not return.
+  void abandon() noexcept;
+  [[nodiscard]] bool is_abandoned() const noexcept { return is_abandoned_; }
 
   // --- looking ---
 
@@ -235,9 +244,11 @@ class Scheduler {
   bool clock_was_read_ = false;
   bool has_run_ = false;
   bool strategy_follows_steps_ = false;
+  SimTime point_cost_{point_cost};
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;
   bool steps_are_checked_ = false;
+  bool is_abandoned_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
 };

@@ -87,6 +87,8 @@ int Segments::open(std::string_view path, int flags) noexcept {
     segment = &create(name);
   } else if ((flags & O_TRUNC) != 0) {
     segment->bytes = 0;
+  } else {
+    world_.scheduler().only_looked();
   }
   descriptors_.push_back({.segment = index_of(*segment),
                           .process = current_task->process,
@@ -142,7 +144,9 @@ int Segments::resize(int descriptor, off_t bytes) noexcept {
   if (wanted > segment_bytes_max) {
     world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
   }
-  if (wanted > segment->bytes) {
+  if (wanted == segment->bytes) {
+    world_.scheduler().only_looked();
+  } else if (wanted > segment->bytes) {
     grow(*segment, wanted);
   } else {
     segment->bytes = wanted;

@@ -62,6 +62,11 @@ class Segments {
   int resize(int descriptor, off_t bytes) noexcept;
   int status(int descriptor, struct stat& into) noexcept;
   int close(int descriptor) noexcept;
+  /// Of the segment; empty for a descriptor that is closed or never was.
+  [[nodiscard]] std::string_view name_of(int descriptor) noexcept {
+    const Segment* const segment = of_descriptor(descriptor);
+    return segment == nullptr ? std::string_view{} : segment->name;
+  }
   void* map(std::size_t bytes, int protection, int flags, int descriptor, off_t offset) noexcept;
   int unmap(void* address, std::size_t bytes) noexcept;
 

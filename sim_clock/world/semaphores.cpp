@@ -54,6 +54,7 @@ sem_t* Semaphores::open(std::string_view path, int flags, unsigned value) noexce
     }
     return &create(name, name, value);
   }
+  world_.scheduler().only_looked();
   return &handles_[static_cast<std::size_t>(semaphore - semaphores_.data())];
 }
 
@@ -64,7 +65,9 @@ int Semaphores::close(sem_t* handle) noexcept {
 }
 
 int Semaphores::unlink(std::string_view path) noexcept {
-  world_.scheduler().point(operation_on(OperationKind::sem_unlink));
+  Operation operation = operation_on(OperationKind::sem_unlink);
+  operation.name = name_hash(path);
+  world_.scheduler().point(operation);
   Semaphore* const semaphore = find(plain_name(path).value_or(""));
   if (semaphore == nullptr) {
     errno = ENOENT;
@@ -100,6 +103,7 @@ int Semaphores::wait(sem_t* handle) noexcept {
 int Semaphores::try_wait(sem_t* handle) noexcept {
   Semaphore& semaphore = arrive_at(handle, OperationKind::sem_trywait);
   if (semaphore.value == 0) {
+    world_.scheduler().only_looked();
     errno = EAGAIN;
     return -1;
   }
@@ -152,6 +156,13 @@ int Semaphores::wait_until(sem_t* handle, OperationKind kind, Deadline deadline)
     }
   }
   take_token(semaphore);
+  return 0;
+}
+
+unsigned Semaphores::value_of(ObjectId object) const noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (semaphores_[i].object == object) return semaphores_[i].value;
+  }
   return 0;
 }
 

@@ -44,6 +44,8 @@ class Semaphores {
   void bound(std::string_view name, unsigned count_max);
 
   /// At set-up: a named semaphore that is there already.
+  /// @return the value; 0 of what is no semaphore
+  [[nodiscard]] unsigned value_of(ObjectId object) const noexcept;
   void leave(std::string_view path, unsigned value);
 
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.

@@ -94,13 +94,14 @@ World::~World() {
 void World::run() {
   if (faults_.crash_is_possible()) faults_.prepare_restarts();
   scheduler_.run();
+  if (scheduler_.is_abandoned()) throw Abandoned{};
   // Now, and not when the execution ends: what the scenario itself may do to the memory comes after.
   if (!failed()) segments_.check_all_memory();
 }
 
 void World::end_execution() noexcept {
   in_execution = nullptr;
-  if (failed()) return;
+  if (failed() || scheduler_.is_abandoned()) return;
   if (const auto race = checks_.race()) {
     scheduler_.fail(OutcomeKind::data_race, describe(*race, segments_.segment_at(race->place), *this));
     return;

@@ -128,7 +128,9 @@ class World {
   void leave_semaphore(std::string_view name, unsigned value) { semaphores_.leave(name, value); }
 
   /// Runs all tasks until they have finished or the execution has failed.
+  /// @throw Abandoned  the strategy is not interested in the rest: for who runs the scenario, who must not catch it himself
   void run();
+  struct Abandoned {};
   /// Whether the execution has failed already: what a scenario checks after run() means nothing then.
   [[nodiscard]] bool failed() const noexcept { return !scheduler_.outcome().passed(); }
 

@@ -1,0 +1,190 @@
+// ltsim prove: runs all executions of a scenario within bounds, and says exactly what was covered.
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "sim_clock/explore/proof_file.hpp"
+#include "sim_clock/explore/prover.hpp"
+#include "sim_clock/scenario/command.hpp"
+#include "sim_clock/scenario/interrupt.hpp"
+#include "sim_clock/scenario/report.hpp"
+
+namespace ltsim {
+namespace {
+
+struct ProveArguments {
+  std::string scenario;
+  ProveOptions options;
+  double seconds = 0;
+  double minimize_seconds = 2;
+  std::string checkpoint_file;
+  bool begins_anew = false;
+  std::string out_folder = "out";
+};
+
+std::string file_name(std::string scenario, std::string_view ending) {
+  std::replace(scenario.begin(), scenario.end(), '/', '-');
+  return scenario.append(ending);
+}
+
+/// One line that is written over, for a person who waits at a terminal.
+class ProgressOfProof {
+ public:
+  explicit ProgressOfProof(std::string_view scenario)
+      : scenario_(scenario), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+  ~ProgressOfProof() {
+    if (is_shown_) fmt::print(stderr, "\r\033[K");
+  }
+  ProgressOfProof(const ProgressOfProof&) = delete;
+  ProgressOfProof& operator=(const ProgressOfProof&) = delete;
+
+  void show(const ProveReport& report) {
+    if (!is_terminal_ || report.seconds - shown_at_ < 1) return;
+    shown_at_ = report.seconds;
+    is_shown_ = true;
+    const double left = report.done > 0 ? report.seconds * (1 - report.done) / report.done : 0;
+    fmt::print(stderr,
+               "\r\033[K{}  {} executions, {:.0f} s, {:.1f} % of what is known of, {:.0f} s left for that",
+               scenario_, report.executions, report.seconds, 100 * report.done, left);
+  }
+
+ private:
+  std::string scenario_;
+  bool is_terminal_;
+  bool is_shown_ = false;
+  double shown_at_ = 0;
+};
+
+/// What an earlier run has left, if it was of the same search.
+/// @throw UsageError if the file is of another one, or cannot be read
+ProveReport earlier_part(const ProveArguments& arguments, const std::string& path) {
+  if (arguments.begins_anew || !std::filesystem::exists(path)) return {};
+  std::ifstream file{path, std::ios::binary};
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  const auto found = parse_proof(text, arguments.scenario, arguments.options);
+  if (!file || !found)
+    throw UsageError{fmt::format("{}: {}; \"--anew\" begins from the beginning", path,
+                                 found ? std::string{"cannot be read"} : found.error())};
+  fmt::print("  goes on from {}, after {} executions\n", path, found->executions);
+  return *found;
+}
+
+int tell_failure(const ProveArguments& arguments, std::string_view program, const ProveReport& report) {
+  const Failure& failure = *report.failure;
+  const std::string path =
+      (std::filesystem::path{arguments.out_folder} / file_name(arguments.scenario, ".schedule")).string();
+  fmt::print("{}", describe(failure, "exhaustive"));
+  const FileResult written = write_file(path, to_string(failure.schedule));
+  if (written) {
+    fmt::print("  replay:  {} replay {}\n", as_shell_word(std::string{program}), as_shell_word(path));
+  } else {
+    fmt::print("  {}: cannot be written: {}; the lines above are what it would hold\n", path,
+               written.error());
+  }
+  return exit_failure_found;
+}
+
+int prove(const ProveArguments& arguments, std::string_view program) {
+  if (arguments.options.bounds.silences != 0 && !arguments.options.bounds.preemptions)
+    throw UsageError{
+        "--silences needs --preemptions: where time may pass at any moment, only a bounded search ends"};
+  const Scenario& scenario = scenario_of_name(arguments.scenario);
+  const std::string checkpoint_path =
+      arguments.checkpoint_file.empty()
+          ? (std::filesystem::path{arguments.out_folder} / file_name(arguments.scenario, ".proof")).string()
+          : arguments.checkpoint_file;
+  fmt::print("{}  {}\n", scenario.name, describe_bounds(arguments.options));
+  const ProveReport earlier = earlier_part(arguments, checkpoint_path);
+  std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
+  const InterruptGuard interrupt;
+  ProveReport report;
+  {
+    World world;
+    ProgressOfProof line{scenario.name};
+    report = Prover{world}.prove(scenario, arguments.options, earlier, [&](const ProveReport& so_far) {
+      line.show(so_far);
+      return InterruptGuard::signal() == 0;
+    });
+  }
+  if (report.error) {
+    fmt::print(stderr, "ltsim: {}\n", *report.error);
+    return exit_our_fault;
+  }
+  fmt::print("{}  {}\n  {} scheduling points, {} executions left when they came to nothing new, {:.1f} s\n",
+             scenario.name, describe_coverage(report, arguments.options), report.points, report.redundant,
+             report.seconds);
+  if (report.failure) return tell_failure(arguments, program, report);
+  if (report.complete) {
+    std::error_code nothing_to_remove;
+    std::filesystem::remove(checkpoint_path, nothing_to_remove);
+    return exit_nothing_found;
+  }
+  write_asked_for_file(checkpoint_path, to_proof(report, arguments.scenario, arguments.options));
+  fmt::print("  no proof yet: about {:.1f} % of what is known of is done; the same command goes on from {}\n",
+             100 * report.done, checkpoint_path);
+  return InterruptGuard::signal() == 0 ? exit_nothing_found : exit_of_signal(InterruptGuard::signal());
+}
+
+}  // namespace
+
+void add_prove_command(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<ProveArguments>();
+  CLI::App* const command =
+      app.add_subcommand("prove", "run all executions of a scenario within bounds, and say what was covered");
+  command->add_option("scenario", arguments->scenario, "name as \"list\" shows it")->required();
+  command->add_option("--preemptions", arguments->options.bounds.preemptions,
+                      "at most so many switches from a task that could go on; any number unless given, and "
+                      "then only one of the "
+                      "orders that make no difference is run");
+  command
+      ->add_option("--silences", arguments->options.bounds.silences,
+                   "with --preemptions: so often time may go on, from timer to timer, while some task that "
+                   "could run takes no step")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--looks", arguments->options.bounds.looks,
+          "a task that polls looks so often in vain before it waits for somebody to change something")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option_function<std::string>(
+          "--memory",
+          [arguments](const std::string& memory) {
+            arguments->options.memory = memory == to_string(Memory::sc) ? Memory::sc : Memory::c11;
+          },
+          "sc: each load sees the latest store; c11: what C++ allows of atomic operations by their memory "
+          "orders")
+      ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
+  const CLI::Option* const seconds =
+      command
+          ->add_option("--seconds", arguments->seconds,
+                       "at most so long, in real time; the rest can follow later")
+          ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--minimize-seconds", arguments->minimize_seconds,
+                   "real time for making the schedule of a failure small; 0: as it was found")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option(
+      "--checkpoint", arguments->checkpoint_file,
+      "file for where the search stands when it is interrupted; SCENARIO.proof in the folder of schedules if "
+      "not given");
+  command->add_flag("--anew", arguments->begins_anew, "do not go on from a checkpoint");
+  command->add_option("--out", arguments->out_folder, "folder for schedules")->capture_default_str();
+  command->callback([=, &chosen] {
+    arguments->options.minimize_seconds = std::chrono::duration<double>{arguments->minimize_seconds};
+    if (!seconds->empty()) arguments->options.seconds_max = std::chrono::duration<double>{arguments->seconds};
+    chosen = [arguments](std::string_view program) { return prove(*arguments, program); };
+  });
+}
+
+}  // namespace ltsim
