@@ -8,7 +8,8 @@
 //
 // registers the scenarios "races/o30-lost-update", which fails with a message that begins with "I14" or with an
 // outcome of that name, and "races/o30-lost-update-corrected", which never fails. What the facts say is for people
-// and for tests of the search; no strategy sees it.
+// and for tests of the search; no strategy sees it. Of the facts only the memory says how to search: whoever explores a
+// shape, or its corrected program, does so with that memory. "ltsim explore" asks for it by --memory.
 #pragma once
 
 #include <string>
@@ -27,7 +28,8 @@ struct ShapeFacts {
   /// How many ordering constraints are enough for the failure, as probabilistic concurrency testing counts them.
   unsigned depth = 1;
   unsigned tasks_count = 2;
-  std::string_view cure;  ///< what the corrected program does instead
+  Memory memory = Memory::sc;  ///< the strongest memory that shows it
+  std::string_view cure;       ///< what the corrected program does instead
 };
 
 struct Shape {

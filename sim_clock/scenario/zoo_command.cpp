@@ -20,6 +20,7 @@ namespace ltsim {
 namespace {
 
 constexpr int name_width = 45;
+constexpr int memory_width = 6;
 constexpr int number_width = 9;
 
 struct ZooArguments {
@@ -36,11 +37,12 @@ struct Needed {
   std::optional<Schedule> failing;  ///< of the first seed that found it
 };
 
-ExploreReport explore(World& world, std::string_view scenario, std::string_view strategy_name,
+ExploreReport explore(World& world, std::string_view scenario, Memory memory, std::string_view strategy_name,
                       std::uint64_t seed, std::uint64_t executions) {
   ExploreOptions options;
   options.seed = seed;
   options.executions_max = executions;
+  options.memory = memory;
   return Explorer{world}.explore(*find_scenario(scenario), *make_strategy(strategy_name), options);
 }
 
@@ -48,7 +50,8 @@ Needed measure(World& world, const Shape& shape, std::string_view strategy_name,
                const ZooArguments& arguments) {
   Needed needed;
   for (std::uint64_t seed = 1; seed <= arguments.seeds; ++seed) {
-    const ExploreReport report = explore(world, shape.name, strategy_name, seed, arguments.executions);
+    const ExploreReport report =
+        explore(world, shape.name, shape.facts.memory, strategy_name, seed, arguments.executions);
     const bool found = !report.failures.empty() && shape.is_finding(report.failures.front().outcome);
     needed.sum += found ? report.executions : arguments.executions;
     needed.most = std::max(needed.most, report.executions);
@@ -73,12 +76,13 @@ std::string lines_of_minimal(World& world, const Shape& shape, const std::option
 bool corrected_is_silent(World& world, const Shape& shape, std::uint64_t most_needed,
                          const ZooArguments& arguments) {
   const std::uint64_t executions = std::min(10 * most_needed, arguments.executions);
-  return explore(world, shape.corrected_name, strategy_names().front(), 1, executions).failures.empty();
+  return explore(world, shape.corrected_name, shape.facts.memory, strategy_names().front(), 1, executions)
+      .failures.empty();
 }
 
 /// @return whether the default strategy finds the shape from every seed and the corrected program is silent
 bool show(World& world, const Shape& shape, const ZooArguments& arguments) {
-  fmt::print("{:<{}}", shape.name, name_width);
+  fmt::print("{:<{}}{:<{}}", shape.name, name_width, to_string(shape.facts.memory), memory_width);
   std::optional<Needed> by_default;
   for (const std::string& name : strategy_names()) {
     Needed needed = measure(world, shape, name, arguments);
@@ -107,8 +111,8 @@ int zoo(const ZooArguments& arguments) {
   std::vector<Shape> chosen;
   for (const std::string& name : arguments.shapes) chosen.push_back(shape_of_name(name));
   if (chosen.empty()) chosen = shapes();
-  fmt::print("executions until found, mean of {} seeds; >: not from every seed within {}\n\n{:<{}}",
-             arguments.seeds, arguments.executions, "", name_width);
+  fmt::print("executions until found, mean of {} seeds; >: not from every seed within {}\n\n{:<{}}{:<{}}",
+             arguments.seeds, arguments.executions, "", name_width, "memory", memory_width);
   for (const std::string& name : strategy_names()) fmt::print("{:>{}}", name, number_width);
   fmt::print("{:>7}  corrected\n", "lines");
   World world;

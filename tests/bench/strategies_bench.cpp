@@ -50,6 +50,7 @@ std::uint64_t executions_until_found(ltsim::World& world, const ltsim::Shape& sh
                                      ltsim::Strategy& strategy, std::uint64_t seed, std::uint64_t most) {
   const ltsim::Scenario& scenario = *ltsim::find_scenario(shape.name);
   ltsim::Explorer explorer{world};
+  world.set_default_memory(shape.facts.memory);
   world.coverage().forget();
   for (std::uint64_t execution = 1; execution <= most; ++execution) {
     explorer.execute(scenario, strategy, ltsim::Explorer::seed_of(seed, execution), nullptr);

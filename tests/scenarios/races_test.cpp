@@ -5,6 +5,7 @@
 #include <cctype>
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,8 @@ constexpr std::uint64_t seeds_count = 5;
 constexpr std::uint64_t executions_until_found_max = 40'000;
 constexpr std::uint64_t silent_executions_min = 5'000;
 constexpr std::uint64_t silent_executions_max = 30'000;
+constexpr std::uint64_t executions_of_weak_memory_max = 1'000;
+constexpr std::uint64_t silent_executions_of_weak_memory = 20'000;
 
 using scenarios::explore;
 using scenarios::world;
@@ -47,6 +50,7 @@ unsigned depth_of_program(const ltsim::Shape& shape) {
 std::uint64_t executions_max_of_pct(const ltsim::Shape& shape) {
   ltsim::Schedule nothing_special;
   nothing_special.scenario = shape.name;
+  nothing_special.memory = shape.facts.memory;
   static_cast<void>(
       ltsim::Explorer{world()}.replay(*ltsim::find_scenario(shape.name), nothing_special, nullptr));
   const std::uint64_t points = std::max<std::uint64_t>(world().scheduler().points(), 1);
@@ -68,6 +72,7 @@ TEST_P(ShapeTest, is_found_by_pct_within_the_bar_of_the_catalogue) {
     ltsim::ExploreOptions options;
     options.seed = seed;
     options.executions_max = executions;
+    options.memory = shape.facts.memory;
     const auto report =
         ltsim::Explorer{world()}.explore(*ltsim::find_scenario(shape.name), strategy, options);
     ASSERT_FALSE(report.failures.empty()) << "seed " << seed << ", " << executions << " executions";
@@ -78,7 +83,7 @@ TEST_P(ShapeTest, is_found_by_pct_within_the_bar_of_the_catalogue) {
 TEST_P(ShapeTest, has_a_minimal_schedule_of_at_most_one_line_more_than_its_depth_and_needs_each_line) {
   const ltsim::Shape& shape = GetParam();
   const ltsim::Scenario& scenario = *ltsim::find_scenario(shape.name);
-  const auto report = explore(shape.name, 1, executions_until_found_max);
+  const auto report = explore(shape.name, 1, executions_until_found_max, shape.facts.memory);
   ASSERT_FALSE(report.failures.empty());
   // Bounded by executions, so that a busy machine makes no difference.
   const auto minimized = ltsim::Minimizer{world(), scenario}.minimize(
@@ -100,7 +105,7 @@ TEST_P(ShapeTest, has_a_minimal_schedule_of_at_most_one_line_more_than_its_depth
 }
 
 TEST_P(ShapeTest, replays_to_the_same_trace_a_hundred_times) {
-  const auto report = explore(GetParam().name, 1, executions_until_found_max);
+  const auto report = explore(GetParam().name, 1, executions_until_found_max, GetParam().facts.memory);
   ASSERT_FALSE(report.failures.empty());
   const ltsim::Failure& failure = report.failures.front();
   // Through its text, as from a file.
@@ -118,6 +123,7 @@ TEST_P(ShapeTest, a_seed_gives_the_same_execution_again_whatever_was_learned_bef
   const ltsim::Scenario& scenario = *ltsim::find_scenario(GetParam().name);
   ltsim::Explorer explorer{world()};
   ltsim::SwarmStrategy strategy;
+  world().set_default_memory(GetParam().facts.memory);
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const std::uint64_t hash = explorer.execute(scenario, strategy, seed, nullptr);
     ASSERT_EQ(explorer.execute(scenario, strategy, seed, nullptr), hash) << "seed " << seed;
@@ -125,11 +131,44 @@ TEST_P(ShapeTest, a_seed_gives_the_same_execution_again_whatever_was_learned_bef
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Zoo, ShapeTest, testing::ValuesIn(ltsim::shapes()), [](const auto& tested) {
+std::string test_name(const testing::TestParamInfo<ltsim::Shape>& tested) {
   std::string name{tested.param.name.substr(tested.param.name.find('/') + 1)};
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Zoo, ShapeTest, testing::ValuesIn(ltsim::shapes()), &test_name);
+
+/// The known races that there are only where memory is weak.
+class WeakMemoryShapeTest : public testing::TestWithParam<ltsim::Shape> {};
+
+TEST_P(WeakMemoryShapeTest, is_found_soon_from_each_of_twenty_seeds) {
+  const ltsim::Shape& shape = GetParam();
+  constexpr std::uint64_t many_seeds_count = 20;
+  for (std::uint64_t seed = 1; seed <= many_seeds_count; ++seed) {
+    const auto report = explore(shape.name, seed, executions_of_weak_memory_max, shape.facts.memory);
+    ASSERT_FALSE(report.failures.empty()) << "seed " << seed;
+    EXPECT_TRUE(shape.is_finding(report.failures.front().outcome)) << "seed " << seed;
+  }
+}
+
+TEST_P(WeakMemoryShapeTest, is_silent_if_memory_is_sequentially_consistent_or_the_program_is_corrected) {
+  const ltsim::Shape& shape = GetParam();
+  for (const auto& report :
+       {explore(shape.name, 1, silent_executions_of_weak_memory, ltsim::Memory::sc),
+        explore(shape.corrected_name, 1, silent_executions_of_weak_memory, shape.facts.memory)}) {
+    EXPECT_TRUE(report.failures.empty()) << report.failures.front().outcome.message << '\n'
+                                         << to_string(report.failures.front().schedule);
+  }
+}
+
+std::vector<ltsim::Shape> shapes_of_weak_memory() {
+  std::vector<ltsim::Shape> weak = ltsim::shapes();
+  std::erase_if(weak, [](const ltsim::Shape& shape) { return shape.facts.memory == ltsim::Memory::sc; });
+  return weak;
+}
+
+INSTANTIATE_TEST_SUITE_P(Zoo, WeakMemoryShapeTest, testing::ValuesIn(shapes_of_weak_memory()), &test_name);
 
 TEST(Shape, is_found_by_its_own_finding_only) {
   const ltsim::Shape by_invariant{.name = {}, .corrected_name = {}, .facts = {.finding = "I1", .cure = {}}};

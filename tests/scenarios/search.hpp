@@ -30,12 +30,13 @@ inline ltsim::World& world() {
 
 template <typename Strategy = ltsim::SwarmStrategy>
 ltsim::ExploreReport explore(const ltsim::Scenario& scenario, std::uint64_t seed, std::uint64_t executions,
-                             bool keep_going = false) {
+                             bool keep_going = false, ltsim::Memory memory = ltsim::Memory::sc) {
   Strategy strategy;
   ltsim::ExploreOptions options;
   options.seed = seed;
   options.executions_max = executions;
   options.keep_going = keep_going;
+  options.memory = memory;
   try {
     return ltsim::Explorer{world()}.explore(scenario, strategy, options);
   } catch (const ltsim::Explorer::NotSimulable& error) {
@@ -44,8 +45,9 @@ ltsim::ExploreReport explore(const ltsim::Scenario& scenario, std::uint64_t seed
 }
 
 /// @param scenario  a name that is registered
-inline ltsim::ExploreReport explore(std::string_view scenario, std::uint64_t seed, std::uint64_t executions) {
-  return explore(*ltsim::find_scenario(scenario), seed, executions);
+inline ltsim::ExploreReport explore(std::string_view scenario, std::uint64_t seed, std::uint64_t executions,
+                                    ltsim::Memory memory = ltsim::Memory::sc) {
+  return explore(*ltsim::find_scenario(scenario), seed, executions, false, memory);
 }
 
 struct ShapeBounds {
@@ -61,7 +63,7 @@ inline void expect_found_and_cured(const ltsim::Shape& shape, const ShapeBounds&
   constexpr std::uint64_t seeds_count = 5;
   std::uint64_t most_needed = 0;
   for (std::uint64_t seed = 1; seed <= seeds_count; ++seed) {
-    const auto report = explore(shape.name, seed, bounds.executions_until_found_max);
+    const auto report = explore(shape.name, seed, bounds.executions_until_found_max, shape.facts.memory);
     ASSERT_FALSE(report.failures.empty()) << "seed " << seed;
     const ltsim::Outcome& outcome = report.failures.front().outcome;
     EXPECT_TRUE(shape.is_finding(outcome)) << to_string(outcome.kind) << ": " << outcome.message << '\n'
@@ -71,7 +73,8 @@ inline void expect_found_and_cured(const ltsim::Shape& shape, const ShapeBounds&
   testing::Test::RecordProperty("most_needed", std::to_string(most_needed));
   const auto silent =
       explore(shape.corrected_name, 1,
-              std::clamp(10 * most_needed, bounds.silent_executions_min, bounds.silent_executions_max));
+              std::clamp(10 * most_needed, bounds.silent_executions_min, bounds.silent_executions_max),
+              shape.facts.memory);
   EXPECT_TRUE(silent.failures.empty()) << silent.failures.front().outcome.message << '\n'
                                        << to_string(silent.failures.front().schedule);
 }

@@ -1,8 +1,9 @@
 // What the programs of the known races are made of: a segment laid out as a structure of atomic words, and named
 // semaphores as doorbells and as locks. Each process, or thread, opens what it uses by name.
 //
-// All words are atomic, with the default order, also where the source of a race has plain ones: these programs
-// are about protocols that are wrong however memory behaves.
+// All words are atomic, also where the source of a race has plain ones: these programs are about protocols that are wrong
+// by what they read, and no data race is to tell. Memory orders are the default ones, but in the races that need a weak
+// memory (ShapeFacts::memory).
 #pragma once
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <string>
+#include <thread>
 
 #include <boost/date_time/posix_time/posix_time_types.hpp>
 #include <boost/interprocess/mapped_region.hpp>
@@ -69,6 +71,18 @@ class NamedLock {
  private:
   boost::interprocess::named_semaphore semaphore_;
 };
+
+/// Looks again and again, a millisecond apart, at most ten times. A semaphore instead would order memory as well.
+/// @return whether it has come to hold
+template <typename Condition>
+[[nodiscard]] bool poll_until(Condition holds) {
+  constexpr int looks_max = 10;
+  for (int look = 0; look < looks_max; ++look) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(Milliseconds{1});
+  }
+  return false;
+}
 
 /// Names the first words of a segment, 32 bits each, "segment.word".
 inline void name_words(ltsim::World& world, const std::string& segment,
