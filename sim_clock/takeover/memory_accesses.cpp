@@ -17,42 +17,44 @@ using ltsim::OperationKind;
 using ltsim::Segments;
 
 /// Out of line, so that the announcement of an unshared access is a subtraction, a comparison and a return.
-[[gnu::noinline]] void shared_access(const volatile void* address, std::size_t bytes, OperationKind kind,
-                                     const void* caller) noexcept {
-  if (ltsim::current_task == nullptr) return;
-  ltsim::access_shared(*ltsim::current_task->world, address, bytes, kind, ltsim::code_site(caller));
+[[gnu::noinline]] void watched_access(const volatile void* address, std::size_t bytes, OperationKind kind,
+                                      const void* caller) noexcept {
+  ltsim::Task* const self = ltsim::current_task;
+  if (self == nullptr) return;
+  if (Segments::contains(address)) {
+    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
+  } else {
+    self->world->weak_memory().written_plainly(address,
+                                               bytes);  // where an atomic object was, or is being made
+  }
 }
 
-/// A write outside of segments: where an atomic object was, or is being made.
-[[gnu::noinline]] void unshared_write(const volatile void* address, std::size_t bytes) noexcept {
-  if (ltsim::current_task != nullptr)
-    ltsim::current_task->world->weak_memory().written_plainly(address, bytes);
+/// Whether an access there concerns the world: it lies in a segment, or is a write while memory is weak.
+inline bool is_watched(const volatile void* address, OperationKind kind) noexcept {
+  if (kind == OperationKind::read) return Segments::contains(address);
+  return reinterpret_cast<std::uintptr_t>(address) - Segments::range_begin <
+         ltsim::WeakMemory::watched_bytes();
 }
 
 /// @param caller  the return address of the announcement: it stands in the code under test
 inline void access(const volatile void* address, std::size_t bytes, OperationKind kind,
                    const void* caller) noexcept {
-  if (Segments::contains(address)) [[unlikely]] {
-    shared_access(address, bytes, kind, caller);
-  } else if (kind == OperationKind::write && ltsim::WeakMemory::is_any_on()) [[unlikely]] {
-    unshared_write(address, bytes);
-  }
+  if (is_watched(address, kind)) [[unlikely]]
+    watched_access(address, bytes, kind, caller);
 }
 
 /// A range that the compiler copies or fills itself: one scheduling point per eight bytes, all before the
 /// first byte moves.
 inline void access_range(const volatile void* address, std::size_t bytes, OperationKind kind,
                          const void* caller) noexcept {
-  if (!Segments::contains(address)) [[likely]] {
-    if (kind == OperationKind::write && ltsim::WeakMemory::is_any_on()) unshared_write(address, bytes);
+  if (!is_watched(address, kind)) [[likely]]
     return;
-  }
   constexpr std::size_t piece = 8;
   for (std::size_t at = 0; at < bytes; at += piece) {
-    shared_access(static_cast<const volatile char*>(address) + at, bytes - at < piece ? bytes - at : piece,
-                  kind, caller);
+    watched_access(static_cast<const volatile char*>(address) + at, bytes - at < piece ? bytes - at : piece,
+                   kind, caller);
   }
-  if (kind == OperationKind::write && ltsim::current_task != nullptr)
+  if (kind == OperationKind::write && ltsim::current_task != nullptr && Segments::contains(address))
     ltsim::current_task->world->segments().announce_write(address, bytes);
 }
 

@@ -4,6 +4,7 @@
 #include <semaphore.h>
 
 #include <cstdarg>
+#include <string_view>
 
 #include "sim_clock/takeover/next.hpp"
 #include "sim_clock/world/world.hpp"
@@ -21,8 +22,9 @@ extern "C" sem_t* sem_open(const char* name, int flags, ...) noexcept {
     va_end(arguments);
   }
   if (current_task != nullptr) {
-    current_task->world->scheduler().point(
-        {.kind = ltsim::OperationKind::sem_open, .name = ltsim::name_hash(name)});
+    ltsim::Scheduler& scheduler = current_task->world->scheduler();
+    scheduler.point({.kind = ltsim::OperationKind::sem_open,
+                     .name = scheduler.name_for_strategy([name] { return std::string_view{name}; })});
     return current_task->world->semaphores().open(name, flags, value);
   }
   if (ltsim::World::refuses_real("sem_open")) return SEM_FAILED;

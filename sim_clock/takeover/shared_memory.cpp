@@ -23,9 +23,11 @@ using ltsim::Segments;
 
 namespace {
 
-/// @param name  of what is opened or unlinked, or of what the descriptor is of
-void point(OperationKind kind, std::string_view name) noexcept {
-  current_task->world->scheduler().point({.kind = kind, .name = ltsim::name_hash(name)});
+/// @param name  called for the name of what is opened or unlinked, or of what the descriptor is of
+template <typename Name>
+void point(OperationKind kind, const Name& name) noexcept {
+  ltsim::Scheduler& scheduler = current_task->world->scheduler();
+  scheduler.point({.kind = kind, .name = scheduler.name_for_strategy(name)});
 }
 
 /// Whether a granted fault makes the call fail; errno is then one of `errors`.
@@ -41,8 +43,12 @@ bool is_simulated(int descriptor) noexcept {
   return current_task != nullptr && Segments::is_descriptor(descriptor);
 }
 
-std::string_view name_of(int descriptor) noexcept {
-  return current_task->world->segments().name_of(descriptor);
+auto name_of(int descriptor) noexcept {
+  return [descriptor] { return current_task->world->segments().name_of(descriptor); };
+}
+
+auto as_name(const char* name) noexcept {
+  return [name] { return std::string_view{name}; };
 }
 
 }  // namespace
@@ -50,14 +56,14 @@ std::string_view name_of(int descriptor) noexcept {
 extern "C" int shm_open(const char* name, int flags, mode_t mode) {
   if (current_task == nullptr)
     return ltsim::World::refuses_real("shm_open") ? -1 : LTSIM_NEXT(shm_open)(name, flags, mode);
-  point(OperationKind::shm_open, name);
+  point(OperationKind::shm_open, as_name(name));
   if (fails({EACCES, EMFILE, ENFILE})) return -1;  // shm_open(3)
   return current_task->world->segments().open(name, flags);
 }
 
 extern "C" int shm_unlink(const char* name) {
   if (current_task == nullptr) return LTSIM_NEXT(shm_unlink)(name);
-  point(OperationKind::shm_unlink, name);
+  point(OperationKind::shm_unlink, as_name(name));
   return current_task->world->segments().unlink(name);
 }
 
@@ -105,7 +111,7 @@ extern "C" void* mmap(void* address, std::size_t bytes, int protection, int flag
 extern "C" int munmap(void* address, std::size_t bytes) noexcept {
   if (!Segments::contains(address)) return LTSIM_NEXT(munmap)(address, bytes);
   if (current_task == nullptr) return 0;
-  point(OperationKind::shm_unmap, {});
+  point(OperationKind::shm_unmap, as_name(""));
   return current_task->world->segments().unmap(address, bytes);
 }
 

@@ -93,6 +93,12 @@ class Scheduler {
   /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
   void point(Operation operation) noexcept;
 
+  /// Operation::name of what is called so, for a strategy that follows steps; others are spared the work.
+  template <typename Name>
+  [[nodiscard]] std::uint8_t name_for_strategy(const Name& name) const noexcept {
+    return strategy_follows_steps_ ? name_hash(name()) : std::uint8_t{0};
+  }
+
   /// What the running task performs has turned out to change nothing for anybody.
   void only_looked() noexcept {
     if (strategy_follows_steps_) strategy_->only_looked();

@@ -66,7 +66,7 @@ int Semaphores::close(sem_t* handle) noexcept {
 
 int Semaphores::unlink(std::string_view path) noexcept {
   Operation operation = operation_on(OperationKind::sem_unlink);
-  operation.name = name_hash(path);
+  operation.name = world_.scheduler().name_for_strategy([path] { return path; });
   world_.scheduler().point(operation);
   Semaphore* const semaphore = find(plain_name(path).value_or(""));
   if (semaphore == nullptr) {

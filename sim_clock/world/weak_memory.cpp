@@ -48,7 +48,8 @@ void write_memory(const volatile void* address, std::uint8_t bytes, std::uint64_
 
 void WeakMemory::reset() noexcept {
   if (!on_) return;
-  on_ = is_any_on_ = false;
+  on_ = false;
+  watched_bytes_ = Segments::range_bytes;
   locations_count_ = 0;
   may_hold_location_.fill(0);
   began_after_.fill(0);

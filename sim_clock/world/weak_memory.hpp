@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "sim_clock/check/happens_before.hpp"
+#include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/seq_cst_order.hpp"
 #include "sim_clock/world/task.hpp"
 
@@ -54,10 +55,13 @@ class WeakMemory {
   explicit WeakMemory(World& world) : world_(world), slots_(slots_at_first) {}
   void reset() noexcept;
   /// In this execution memory is weak. Before the first task begins.
-  void turn_on() noexcept { on_ = is_any_on_ = true; }
+  void turn_on() noexcept {
+    on_ = true;
+    watched_bytes_ = ~std::size_t{0};
+  }
   [[nodiscard]] bool on() const noexcept { return on_; }
-  /// The same of the only world, for those who have not found it yet.
-  [[nodiscard]] static bool is_any_on() noexcept { return is_any_on_; }
+  /// Writes to so many bytes from Segments::range_begin on concern the only world: those of the segments, or all there are.
+  [[nodiscard]] static std::size_t watched_bytes() noexcept { return watched_bytes_; }
 
   Result access(const Access& access);
   void fence(TaskId task, int order);
@@ -138,7 +142,7 @@ class WeakMemory {
   /// Makes room for one more event.
   void make_room_for_event() noexcept;
 
-  static inline constinit bool is_any_on_ = false;
+  static inline constinit std::size_t watched_bytes_ = Segments::range_bytes;
 
   World& world_;
   bool on_ = false;
