@@ -295,7 +295,7 @@ std::string Story::describe(const Deviation& deviation) const {
       return fmt::format("{} {} {}: {} newer", task,
                          place.find(" atomic_store ") == std::string::npos ? "does not see the latest store"
                                                                            : "comes before others",
-                         place, newer_stores(deviation.answer));
+                         "at" + place.substr(place.find(' ')), newer_stores(deviation.answer));
   }
   return to_string(deviation);
 }

@@ -70,8 +70,10 @@ void context_switch(benchmark::State& state) {
 }
 BENCHMARK(context_switch);
 
-void scenario(benchmark::State& state, const char* name, bool checks) {
+void scenario(benchmark::State& state, const char* name, bool checks,
+              ltsim::Memory memory = ltsim::Memory::sc) {
   world().set_checks(checks);
+  world().set_default_memory(memory);
   const ltsim::Scenario* const found = ltsim::find_scenario(name);
   LTSIM_CHECK(found != nullptr);
   ltsim::Explorer explorer{world()};
@@ -94,8 +96,10 @@ BENCHMARK_CAPTURE(scenario, handoff, "bench/handoff", true);
 BENCHMARK_CAPTURE(scenario, handoff_unchecked, "bench/handoff", false);
 BENCHMARK_CAPTURE(scenario, hundred_handoffs, "bench/hundred-handoffs", true);
 BENCHMARK_CAPTURE(scenario, hundred_handoffs_unchecked, "bench/hundred-handoffs", false);
+BENCHMARK_CAPTURE(scenario, hundred_handoffs_c11, "bench/hundred-handoffs", true, ltsim::Memory::c11);
 BENCHMARK_CAPTURE(scenario, one_request, "paper/one-request", true);
 BENCHMARK_CAPTURE(scenario, three_requests, "paper/three-requests", true);
+BENCHMARK_CAPTURE(scenario, three_requests_c11, "paper/three-requests", true, ltsim::Memory::c11);
 BENCHMARK_CAPTURE(scenario, three_requests_unchecked, "paper/three-requests", false);
 BENCHMARK_CAPTURE(scenario, part_program, "nc/part-program", true);
 BENCHMARK_CAPTURE(scenario, part_program_unchecked, "nc/part-program", false);

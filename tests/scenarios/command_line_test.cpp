@@ -64,6 +64,46 @@ TEST_F(CommandLineTest, exploring_a_sound_scenario_finds_nothing) {
   EXPECT_NE(result.output.find("nothing found: 1000 executions"), std::string::npos) << result.output;
 }
 
+TEST_F(CommandLineTest, prove_says_what_was_covered) {
+  const Result result = ltsim("prove paper/three-requests --out .");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.output.find("all 4512 executions with any number of preemptions"), std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("memory sc; 0 cut off"), std::string::npos) << result.output;
+}
+
+TEST_F(CommandLineTest, prove_finds_the_late_answer_in_a_silence_and_its_schedule_can_be_replayed) {
+  const Result found =
+      ltsim("prove paper/h03-stale-answer --preemptions 2 --silences 1 --minimize-seconds 0 --out .");
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_NE(found.output.find("invariant: I1: "), std::string::npos) << found.output;
+  EXPECT_EQ(ltsim("replay paper-h03-stale-answer.schedule").exit_code, 1);
+}
+
+TEST_F(CommandLineTest, a_proof_that_is_interrupted_goes_on_where_it_was) {
+  const std::string command = "prove races/o02-stale-response-corrected --silences 1 --out . --preemptions ";
+  const auto coverage_of = [](const Result& result) {
+    const std::size_t begin = result.output.find("  all ");
+    return begin == std::string::npos ? result.output
+                                      : result.output.substr(begin, result.output.find('\n', begin) - begin);
+  };
+  const std::string whole = coverage_of(ltsim(command + "2 --anew"));
+  const Result begun = ltsim(command + "2 --seconds 0.001");
+  EXPECT_NE(begun.output.find("no proof yet"), std::string::npos) << begun.output;
+  const Result other = ltsim(command + "1");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.output.find("of other bounds"), std::string::npos) << other.output;
+  const Result ended = ltsim(command + "2");
+  EXPECT_NE(ended.output.find("goes on from"), std::string::npos) << ended.output;
+  EXPECT_EQ(coverage_of(ended), whole);
+}
+
+TEST_F(CommandLineTest, prove_refuses_silences_without_a_bound_on_preemptions) {
+  const Result result = ltsim("prove paper/three-requests --silences 1");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.output.find("--silences needs --preemptions"), std::string::npos) << result.output;
+}
+
 TEST_F(CommandLineTest, the_replay_line_of_a_failure_is_the_last_and_runs_as_it_is_printed) {
   const Result found = ltsim("explore paper/time-out");
   EXPECT_EQ(found.exit_code, 1);
