@@ -40,7 +40,7 @@ void ExhaustiveStrategy::begin_execution(std::uint64_t /*seed*/) noexcept {
   last_of_.assign(steppers_count, none);
   woken_by_.assign(steppers_count, none);
   follows_.assign(steppers_count, none);
-  is_redundant_ = is_cut_off_ = false;
+  is_redundant_ = is_cut_off_ = is_held_back_ = false;
 }
 
 ExhaustiveStrategy::Decision& ExhaustiveStrategy::next_decision(const Decision& as_new) noexcept {
@@ -66,8 +66,7 @@ void ExhaustiveStrategy::note_that_runs_differ() {
   if (!trouble_.empty()) return;
   trouble_ = fmt::format(
       "an execution that is run again differs at choice {}: a variable of the code under test or of the "
-      "scenario survives "
-      "from one execution to the next",
+      "scenario survives from one execution to the next",
       at_ + 1);
 }
 
@@ -111,6 +110,7 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
     polling_ |= bit(runner);
   if (silence_goes_on() && (enabled & ~silent_) != 0) enabled &= ~silent_;
   Tasks candidates = enabled & ~polling_;
+  is_held_back_ = is_held_back_ || (candidates != 0 && candidates != enabled);
   if (candidates == 0) candidates = enabled;
   Decision as_new{.is_of_tasks = true, .enabled = enabled};
   const bool is_new = at_ == path_.size();

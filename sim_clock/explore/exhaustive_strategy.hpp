@@ -58,6 +58,8 @@ class ExhaustiveStrategy final : public Strategy {
   [[nodiscard]] bool was_redundant() const noexcept { return is_redundant_; }
   /// The last execution was longer than steps_max.
   [[nodiscard]] bool was_cut_off() const noexcept { return is_cut_off_; }
+  /// In the last execution a task that polled could have gone on, and was made to wait.
+  [[nodiscard]] bool was_held_back() const noexcept { return is_held_back_; }
   /// How much of the search is over, by what is known of it now: 0 to 1. More may turn up.
   [[nodiscard]] double done() const noexcept;
   /// What makes the search impossible, if something does.
@@ -175,6 +177,7 @@ class ExhaustiveStrategy final : public Strategy {
   std::vector<std::uint32_t> follows_;        // by task: for its next event
   bool is_redundant_ = false;
   bool is_cut_off_ = false;
+  bool is_held_back_ = false;
 };
 
 }  // namespace ltsim

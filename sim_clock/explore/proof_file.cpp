@@ -34,9 +34,9 @@ std::string head(std::string_view scenario, const ProveOptions& options) {
 }  // namespace
 
 std::string to_proof(const ProveReport& report, std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}counted   {} executions, {} redundant, {} cut off, {} points, {} s\n{}",
+  return fmt::format("{}counted   {} executions, {} redundant, {} cut off, {} held back, {} points, {} s\n{}",
                      head(scenario, options), report.executions, report.redundant, report.cut_off,
-                     report.points, report.seconds, report.checkpoint);
+                     report.held_back, report.points, report.seconds, report.checkpoint);
 }
 
 tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::string_view scenario,
@@ -53,13 +53,16 @@ tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::s
   unsigned long long executions = 0;
   unsigned long long redundant = 0;
   unsigned long long cut_off = 0;
+  unsigned long long held_back = 0;
   unsigned long long points = 0;
-  if (std::sscanf(rest.c_str(), "counted %llu executions, %llu redundant, %llu cut off, %llu points, %lf s",
-                  &executions, &redundant, &cut_off, &points, &report.seconds) != 5)
+  if (std::sscanf(rest.c_str(),
+                  "counted %llu executions, %llu redundant, %llu cut off, %llu held back, %llu points, %lf s",
+                  &executions, &redundant, &cut_off, &held_back, &points, &report.seconds) != 6)
     return tl::unexpected<std::string>("the line that says what was counted is missing");
   report.executions = executions;
   report.redundant = redundant;
   report.cut_off = cut_off;
+  report.held_back = held_back;
   report.points = points;
   report.checkpoint = rest.substr(std::min(rest.find('\n') + 1, rest.size()));
   return report;

@@ -49,6 +49,7 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
       } else {
         ++report.executions;
         if (strategy.was_cut_off()) ++report.cut_off;
+        if (strategy.was_held_back()) ++report.held_back;
       }
       if (!world_.scheduler().outcome().passed()) {
         Failure failure = explorer.record(scenario, strategy, 0);
@@ -94,8 +95,13 @@ std::string describe_bounds(const ProveOptions& options) {
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {
-  return fmt::format("{}{} with {}; {} cut off", report.complete ? "all " : "",
-                     counted(report.executions, "execution"), describe_bounds(options), report.cut_off);
+  const std::string held_back =
+      report.held_back == 0 ? std::string{}
+                            : fmt::format("; in {} of them a task that polled waited for a change after {}",
+                                          report.held_back, counted(options.bounds.looks, "look"));
+  return fmt::format("{}{} with {}; {} cut off{}", report.complete ? "all " : "",
+                     counted(report.executions, "execution"), describe_bounds(options), report.cut_off,
+                     held_back);
 }
 
 }  // namespace ltsim

@@ -40,8 +40,9 @@ enum class Step : std::uint8_t {
   wait_for_notice,
   join_a_thread,
   poll,
+  spin,
 };
-constexpr std::uint32_t steps_count = 16;
+constexpr std::uint32_t steps_count = 17;
 
 bool is_of_semaphore(Step step) noexcept { return step >= Step::post && step <= Step::timed_wait; }
 
@@ -165,6 +166,11 @@ class ExhaustiveStrategyTest : public WorldTest {
           seen.push_back(word.load());
           break;
         }
+        case Step::spin:
+          for (std::uint32_t tries = 0; word.load() == 0 && tries < 2 + number; ++tries)
+            std::this_thread::yield();
+          seen.push_back(word.load());
+          break;
         case Step::join_a_thread: {
           std::thread thread{[&] { seen.push_back(word.fetch_add(7)); }};
           thread.join();
@@ -216,9 +222,9 @@ class ExhaustiveStrategyTest : public WorldTest {
     unsigned compared = 0;
     for (unsigned i = 0; i < plans_count; ++i) {
       const Plan plan = random_plan(generator);
-      const Found all = search(plan, {.preemptions = any_number});
+      const Found all = search(plan, {.preemptions = any_number, .looks = any_number});
       if (!all.is_over) continue;  // too many orders to try each
-      const Found reduced = search(plan, {});
+      const Found reduced = search(plan, {.preemptions = {}, .looks = any_number});
       ++compared;
       EXPECT_EQ(reduced.trouble, "") << to_string(plan);
       EXPECT_TRUE(reduced.is_over) << to_string(plan);

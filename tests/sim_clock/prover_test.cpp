@@ -329,6 +329,12 @@ TEST_F(ProverTest, says_what_was_covered_and_no_more) {
   options.memory = Memory::c11;
   EXPECT_EQ(describe_coverage(report, options),
             "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off");
+  report.held_back = 7;
+  EXPECT_EQ(describe_coverage(report, options),
+            "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off; in 7 of "
+            "them a task that polled "
+            "waited for a change after 4 looks");
+  report.held_back = 0;
   report.complete = false;
   report.executions = 1;
   options = {};
