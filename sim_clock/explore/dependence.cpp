@@ -111,18 +111,4 @@ bool order_matters(const StepEffect& one, const StepEffect& other, bool memory_i
   return of_a == Domain::once && of_b == Domain::once;
 }
 
-bool uses_clock(OperationKind kind) noexcept {
-  switch (kind) {
-    case OperationKind::clock_read:
-    case OperationKind::sleep:
-    case OperationKind::sem_timedwait:
-    case OperationKind::mutex_timedlock:
-    case OperationKind::cond_timedwait:
-    case OperationKind::futex_wait:
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace ltsim

@@ -19,7 +19,4 @@ struct StepEffect {
 [[nodiscard]] bool order_matters(const StepEffect& one, const StepEffect& other,
                                  bool memory_is_weak) noexcept;
 
-/// Whether the operation reads a clock, or waits for one: the order of that and of time that passes matters.
-[[nodiscard]] bool uses_clock(OperationKind kind) noexcept;
-
 }  // namespace ltsim

@@ -28,6 +28,20 @@ bool is_more_than_a_look(OperationKind kind) noexcept {
   return !can_be_polling(kind) && kind != OperationKind::sleep;
 }
 
+/// It looks at a clock, or waits until a time: who polls so may have enough of it.
+bool uses_clock(OperationKind kind) noexcept {
+  switch (kind) {
+    case OperationKind::clock_read:
+    case OperationKind::sem_timedwait:
+    case OperationKind::mutex_timedlock:
+    case OperationKind::cond_timedwait:
+    case OperationKind::futex_wait:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 void ExhaustiveStrategy::begin_execution(std::uint64_t /*seed*/) noexcept {
@@ -138,7 +152,7 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
     as_new.chosen = static_cast<std::uint32_t>((first & bit(runner)) != 0 ? runner : std::countr_zero(first));
     as_new.to_try |= bit(as_new.chosen);
   }
-  Decision& decision = next_decision(as_new);
+  const Decision& decision = next_decision(as_new);
   asleep_ = (decision.asleep | decision.tried) & ~bit(decision.chosen);
   if (bounds_.preemptions) asleep_ = 0;
   if (goes_on && (polling_ & bit(runner)) == 0 && decision.chosen != runner) ++preemptions_;
@@ -232,7 +246,7 @@ void ExhaustiveStrategy::begin_event(std::size_t stepper, const Operation& opera
   asleep_ &= ~bit(stepper);
   silent_ &= ~bit(stepper);
   if (is_more_than_a_look(operation.kind)) silence_steps_ = std::min(silence_steps_, 1U);
-  clock_was_used_ = clock_was_used_ || (uses_clock(operation.kind) && operation.kind != OperationKind::sleep);
+  clock_was_used_ = clock_was_used_ || uses_clock(operation.kind);
   polling_ &= ~bit(stepper);
   wake_sleepers(event);
   last_of_[stepper] = static_cast<std::uint32_t>(events_.size());

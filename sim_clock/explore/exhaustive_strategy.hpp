@@ -35,9 +35,9 @@ class World;
 /// What a proof covers, besides the faults that the scenario grants.
 struct ProofBounds {
   std::optional<unsigned> preemptions;  ///< of tasks that could have gone on; none: any number
-  /// Only with a bound on preemptions. Stretches in which time goes on, from timer to timer, while some task that could run takes no step. One may end after its
-  /// first timer, and wherever somebody has done more than look (and sleep) since the last: who looks in vain again and again, and at
-  /// a clock, does so until his time is over.
+  /// Only with a bound on preemptions. Stretches in which time goes on, from timer to timer, while some task that could run
+  /// takes no step. One may end after its first timer, and wherever somebody has done more than look (and sleep) since the
+  /// last: a task that looks in vain again and again, and at a clock, does so until its time is over.
   unsigned silences = 0;
   unsigned looks = 4;  ///< in vain, at the same thing, until a polling task waits for a change
 };
@@ -45,8 +45,8 @@ struct ProofBounds {
 class ExhaustiveStrategy final : public Strategy {
  public:
   static constexpr std::size_t tasks_max = 60;
-  static constexpr std::size_t steps_max =
-      4096;  ///< of one execution; all that comes after them is by default
+  /// Of one execution; all that comes after them is by default.
+  static constexpr std::size_t steps_max = 4096;
 
   /// @param world  whose scenario it explores; outlives this
   ExhaustiveStrategy(World& world, ProofBounds bounds) : world_(world), bounds_(bounds) {}
@@ -108,15 +108,16 @@ class ExhaustiveStrategy final : public Strategy {
     StepEffect effect;
     std::uint32_t decisions = 0;    // how many there were before it
     std::uint32_t woken_by = none;  // a step that is gone on with: the event that made that possible
-    std::uint32_t follows =
-        none;  // an event that comes before it: it made the task, or was the last of one that is joined
+    // An event that comes before it: it made the task, or was the last of one that is joined.
+    std::uint32_t follows = none;
     bool is_time = false;  // that passes; it has to come here
     bool was_free = true;  // what it acts on, before, for those who take it: a mutex, a token of a semaphore
   };
 
+  /// Whether there have been steps_max, which counts as cut off.
   [[nodiscard]] bool is_too_long() noexcept {
-    if (events_.size() >= steps_max) is_cut_off_ = true;
-    return is_cut_off_ && events_.size() >= steps_max;
+    is_cut_off_ = is_cut_off_ || events_.size() >= steps_max;
+    return is_cut_off_;
   }
   /// The next decision: the one that is replayed, or a new one.
   [[nodiscard]] Decision& next_decision(const Decision& as_new) noexcept;
@@ -169,8 +170,8 @@ class ExhaustiveStrategy final : public Strategy {
   Tasks awaits_join_ = 0;
   Tasks joined_ = 0;
   std::vector<Event> events_;
-  std::vector<std::uint32_t>
-      clocks_;  // by event: per stepper, one more than its last event that happens before
+  // By event: per stepper, one more than its last event that happens before.
+  std::vector<std::uint32_t> clocks_;
   std::vector<std::uint32_t> but_for_fixed_;  // a clock that is being made
   std::vector<std::uint32_t> last_of_;        // by stepper: its last event
   std::vector<std::uint32_t> woken_by_;       // by task

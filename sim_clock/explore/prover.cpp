@@ -40,6 +40,8 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
     // What is initialised on first use must be so in all executions alike.
     ExhaustiveStrategy first{world_, options.bounds};
     static_cast<void>(explorer.execute(scenario, first, 0, nullptr));
+    if (world_.scheduler().cpu() != Cpu::many)
+      throw Explorer::NotSimulable{"the scenario has one processor: which orders matter there, is not known"};
     for (bool goes_on = true; goes_on;) {
       static_cast<void>(explorer.execute(scenario, strategy, 0, nullptr));
       if (!strategy.trouble().empty()) throw Explorer::NotSimulable{strategy.trouble()};
@@ -86,12 +88,12 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
 
 std::string describe_bounds(const ProveOptions& options) {
   const ProofBounds& bounds = options.bounds;
-  if (!bounds.preemptions) {
-    return fmt::format("any number of preemptions, one of each order that makes a difference, memory {}",
-                       to_string(options.memory));
-  }
-  return fmt::format("at most {} and {}, memory {}", counted(*bounds.preemptions, "preemption"),
-                     counted(bounds.silences, "silence"), to_string(options.memory));
+  return fmt::format("{} and {}{}, memory {}",
+                     bounds.preemptions ? "at most " + counted(*bounds.preemptions, "preemption")
+                                        : std::string{"any number of preemptions"},
+                     bounds.silences == 0 ? std::string{"no silence"} : counted(bounds.silences, "silence"),
+                     bounds.preemptions ? "" : ", one of each order that makes a difference",
+                     to_string(options.memory));
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {

@@ -1,5 +1,6 @@
 #include "sim_clock/scenario/command.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -8,6 +9,24 @@
 #include <fmt/format.h>
 
 namespace ltsim {
+
+void add_memory_option(CLI::App& command, Memory& memory) {
+  command
+      .add_option_function<std::string>(
+          "--memory",
+          [&memory](const std::string& name) {
+            memory = name == to_string(Memory::sc) ? Memory::sc : Memory::c11;
+          },
+          "sc: each load sees the latest store; c11: what C++ allows of atomic operations by their memory "
+          "orders")
+      ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
+}
+
+std::string file_of_scenario(const std::string& folder, std::string_view scenario, std::string_view ending) {
+  std::string file{scenario};
+  std::replace(file.begin(), file.end(), '/', '-');
+  return (std::filesystem::path{folder} / file.append(ending)).string();
+}
 
 const Scenario& scenario_of_name(const std::string& name) {
   const Scenario* const scenario = find_scenario(name);

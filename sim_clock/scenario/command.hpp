@@ -42,6 +42,13 @@ void add_prove_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);
 void add_zoo_command(CLI::App& app, Command& chosen);
 
+/// --memory sc|c11
+void add_memory_option(CLI::App& command, Memory& memory);
+
+/// "out/paper-time-out.schedule" for what belongs to paper/time-out.
+[[nodiscard]] std::string file_of_scenario(const std::string& folder, std::string_view scenario,
+                                           std::string_view ending);
+
 /// @throw UsageError if there is none of that name
 [[nodiscard]] const Scenario& scenario_of_name(const std::string& name);
 

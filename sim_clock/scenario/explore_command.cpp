@@ -36,11 +36,9 @@ struct ExploreArguments {
 };
 
 /// "out/paper-time-out.schedule"; the second failure of one exploration gets "-2", and so on.
-std::string schedule_path(const std::string& folder, std::string scenario, std::size_t number) {
-  std::replace(scenario.begin(), scenario.end(), '/', '-');
-  const std::string file = number == 0 ? fmt::format("{}.schedule", scenario)
-                                       : fmt::format("{}-{}.schedule", scenario, number + 1);
-  return (std::filesystem::path{folder} / file).string();
+std::string schedule_path(const std::string& folder, std::string_view scenario, std::size_t number) {
+  return file_of_scenario(folder, scenario,
+                          number == 0 ? ".schedule" : fmt::format("-{}.schedule", number + 1));
 }
 
 /// "at most 1000 executions and 2 s"
@@ -77,7 +75,7 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
 void tell_failures(const ExploreArguments& arguments, std::string_view program, ScenarioReport& report) {
   for (const Failure& failure : report.explored.failures) {
     const std::string path =
-        schedule_path(arguments.out_folder, std::string{report.scenario}, report.schedule_paths.size());
+        schedule_path(arguments.out_folder, report.scenario, report.schedule_paths.size());
     fmt::print("{}", describe(failure, report.strategy));
     const FileResult written =
         failure.has_schedule ? write_file(path, to_string(failure.schedule)) : FileResult{};
@@ -179,15 +177,7 @@ void add_explore_command(CLI::App& app, Command& chosen) {
           "processors of the machine, unless the scenario says otherwise; one-fifo: one that honours "
           "SCHED_FIFO priorities")
       ->check(CLI::IsMember({std::string{to_string(Cpu::many)}, std::string{to_string(Cpu::one_fifo)}}));
-  command
-      ->add_option_function<std::string>(
-          "--memory",
-          [arguments](const std::string& memory) {
-            arguments->options.memory = memory == to_string(Memory::sc) ? Memory::sc : Memory::c11;
-          },
-          "sc: each load sees the latest store; c11: what C++ allows of atomic operations by their memory "
-          "orders")
-      ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
+  add_memory_option(*command, arguments->options.memory);
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
   command

@@ -1,6 +1,5 @@
 // ltsim prove: runs all executions of a scenario within bounds, and says exactly what was covered.
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -29,11 +28,6 @@ struct ProveArguments {
   bool begins_anew = false;
   std::string out_folder = "out";
 };
-
-std::string file_name(std::string scenario, std::string_view ending) {
-  std::replace(scenario.begin(), scenario.end(), '/', '-');
-  return scenario.append(ending);
-}
 
 /// One line that is written over, for a person who waits at a terminal.
 class ProgressOfProof {
@@ -79,8 +73,7 @@ ProveReport earlier_part(const ProveArguments& arguments, const std::string& pat
 
 int tell_failure(const ProveArguments& arguments, std::string_view program, const ProveReport& report) {
   const Failure& failure = *report.failure;
-  const std::string path =
-      (std::filesystem::path{arguments.out_folder} / file_name(arguments.scenario, ".schedule")).string();
+  const std::string path = file_of_scenario(arguments.out_folder, arguments.scenario, ".schedule");
   fmt::print("{}", describe(failure, "exhaustive"));
   const FileResult written = write_file(path, to_string(failure.schedule));
   if (written) {
@@ -98,9 +91,8 @@ int prove(const ProveArguments& arguments, std::string_view program) {
         "--silences needs --preemptions: where time may pass at any moment, only a bounded search ends"};
   const Scenario& scenario = scenario_of_name(arguments.scenario);
   const std::string checkpoint_path =
-      arguments.checkpoint_file.empty()
-          ? (std::filesystem::path{arguments.out_folder} / file_name(arguments.scenario, ".proof")).string()
-          : arguments.checkpoint_file;
+      arguments.checkpoint_file.empty() ? file_of_scenario(arguments.out_folder, arguments.scenario, ".proof")
+                                        : arguments.checkpoint_file;
   fmt::print("{}  {}\n", scenario.name, describe_bounds(arguments.options));
   const ProveReport earlier = earlier_part(arguments, checkpoint_path);
   std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
@@ -155,15 +147,7 @@ void add_prove_command(CLI::App& app, Command& chosen) {
           "a task that polls looks so often in vain before it waits for somebody to change something")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command
-      ->add_option_function<std::string>(
-          "--memory",
-          [arguments](const std::string& memory) {
-            arguments->options.memory = memory == to_string(Memory::sc) ? Memory::sc : Memory::c11;
-          },
-          "sc: each load sees the latest store; c11: what C++ allows of atomic operations by their memory "
-          "orders")
-      ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
+  add_memory_option(*command, arguments->options.memory);
   const CLI::Option* const seconds =
       command
           ->add_option("--seconds", arguments->seconds,

@@ -112,18 +112,18 @@ std::optional<WeakMemory::Option> WeakMemory::option_at(const Location& location
   Option option{
       .age = latest - position,
       .stores = access.kind != AtomicAccess::load && (!access.expected || *access.expected == store.value),
+      .order = access.order,
       .before = 0,
       .fences = 0};
   if (option.stores && position != latest && location.stores[position + 1].is_update) return std::nullopt;
-  const int order =
-      access.kind == AtomicAccess::update && !option.stores ? access.failure_order : access.order;
+  if (access.kind == AtomicAccess::update && !option.stores) option.order = access.failure_order;
   HappensBefore& happens_before = world_.checks().order();
   const Ticks* const known = happens_before.known_to(task);
-  const bool receives =
-      access.kind != AtomicAccess::store && acquires(order) && store.handed_over != HappensBefore::nothing;
+  const bool receives = access.kind != AtomicAccess::store && acquires(option.order) &&
+                        store.handed_over != HappensBefore::nothing;
   option.fences =
       seq_cst_.fences_before(task, known, receives ? happens_before.covered_by(store.handed_over) : nullptr);
-  if (is_seq_cst(order)) {
+  if (is_seq_cst(option.order)) {
     Events before = location.dropped | store.of_store;
     if (option.stores) before |= store.of_loads;
     for (std::uint32_t older = 0; older < position; ++older)
@@ -140,19 +140,17 @@ WeakMemory::Result WeakMemory::carry_out(Location& location, const Access& acces
   const auto latest = static_cast<std::uint32_t>(location.stores.size() - 1);
   const std::uint32_t position = latest - option.age;
   const bool loads = access.kind != AtomicAccess::store;
-  const int order =
-      loads && !option.stores && access.kind == AtomicAccess::update ? access.failure_order : access.order;
   HappensBefore& happens_before = world_.checks().order();
   const HappensBefore::HandedOver found_with = location.stores[position].handed_over;
   const Ticks before = happens_before.now(task);
-  if (loads) happens_before.load_receives(task, found_with, order);
+  if (loads) happens_before.load_receives(task, found_with, option.order);
   Store made;
   if (option.stores) {
     made.handed_over =
-        happens_before.store_hands_over(task, order, loads ? found_with : HappensBefore::nothing);
+        happens_before.store_hands_over(task, option.order, loads ? found_with : HappensBefore::nothing);
   }
   const Events own =
-      is_seq_cst(order)
+      is_seq_cst(option.order)
           ? seq_cst_.add(task, {.happens = before, .strongly_happens = happens_before.now(task)}, false,
                          option.before)
           : Events{0};

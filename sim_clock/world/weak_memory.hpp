@@ -111,6 +111,7 @@ class WeakMemory {
   struct Option {
     std::uint32_t age;  // how many stores are newer
     bool stores;
+    int order;      // of the operation, as what it turns out to be
     Events before;  // in the seq_cst order, with predecessors
     Events fences;  // that happen before the access
   };

@@ -67,7 +67,8 @@ TEST_F(CommandLineTest, exploring_a_sound_scenario_finds_nothing) {
 TEST_F(CommandLineTest, prove_says_what_was_covered) {
   const Result result = ltsim("prove paper/three-requests --out .");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_NE(result.output.find("all 4512 executions with any number of preemptions"), std::string::npos)
+  EXPECT_NE(result.output.find("all 4512 executions with any number of preemptions and no silence"),
+            std::string::npos)
       << result.output;
   EXPECT_NE(result.output.find("memory sc; 0 cut off"), std::string::npos) << result.output;
 }

@@ -339,7 +339,8 @@ TEST_F(ProverTest, says_what_was_covered_and_no_more) {
   report.executions = 1;
   options = {};
   EXPECT_EQ(describe_coverage(report, options),
-            "1 execution with any number of preemptions, one of each order that makes a difference, memory "
+            "1 execution with any number of preemptions and no silence, one of each order that makes a "
+            "difference, memory "
             "sc; 0 cut off");
 }
 
