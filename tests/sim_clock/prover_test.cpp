@@ -308,6 +308,15 @@ TEST_F(ProverTest, a_program_that_keeps_something_from_one_execution_to_the_next
   EXPECT_NE(report.error.value_or("").find("survives"), std::string::npos);
 }
 
+TEST_F(ProverTest, a_machine_of_one_processor_is_refused) {
+  const ProveReport report = prove([](World& of) {
+    of.set_cpu(Cpu::one_fifo);
+    two_counters_of_their_own(of, 2);
+  });
+  EXPECT_FALSE(report.complete);
+  EXPECT_NE(report.error.value_or("").find("one processor"), std::string::npos);
+}
+
 TEST_F(ProverTest, an_execution_without_end_is_counted_as_cut_off) {
   const ProveReport report = prove([](World& of) {
     Word word{0};
