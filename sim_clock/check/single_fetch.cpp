@@ -91,4 +91,13 @@ void SingleFetch::loaded_twice(const Word& word, const Task& task, std::uint64_t
   LTSIM_UNREACHABLE("a task goes on after a failure");
 }
 
+void SingleFetch::add_state(StateHash& hash) const noexcept {
+  for (std::size_t i = 0; i < words_count_; ++i) {
+    for (std::size_t task = 0; task < world_.scheduler().tasks_count(); ++task) {
+      hash.add(words_[i].fetches[task].bytes_loaded);
+      hash.add(words_[i].fetches[task].value);
+    }
+  }
+}
+
 }  // namespace ltsim

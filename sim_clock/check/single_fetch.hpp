@@ -21,6 +21,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 struct Task;
 
@@ -34,6 +35,8 @@ class SingleFetch {
   /// See World::single_fetch().
   void declare(std::string_view segment, std::uint32_t offset, std::uint32_t bytes, std::string_view name);
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   /// The running task performs `operation` next. Ends the execution if that is a second load.
   void performs(const Task& task, const Operation& operation) noexcept;
 

@@ -44,4 +44,10 @@ void WrittenFirst::performs(const Task& task, const Operation& operation) noexce
   }
 }
 
+void WrittenFirst::add_state(StateHash& hash) const noexcept {
+  for (std::size_t i = 0; i < regions_count_; ++i) {
+    for (const bool written : regions_[i].written) hash.add(written ? 1 : 0);
+  }
+}
+
 }  // namespace ltsim

@@ -14,6 +14,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 struct Task;
 
@@ -25,6 +26,8 @@ class WrittenFirst {
   /// See World::written_first().
   void declare(std::string_view segment, std::uint32_t offset, std::uint32_t bytes, std::string_view name);
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   /// The running task performs `operation` next. Ends the execution if that reads what nobody has written.
   void performs(const Task& task, const Operation& operation) noexcept;
 

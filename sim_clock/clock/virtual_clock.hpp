@@ -52,6 +52,11 @@ class VirtualClock {
     return armed_count_ == 0 ? never : heap_[0].deadline;
   }
 
+  /// Of the timer of `sleeper`; `never` when it is not armed.
+  [[nodiscard]] SimTime deadline_of(TaskId sleeper) const noexcept {
+    return slot_of_[sleeper] == not_armed ? never : heap_[slot_of_[sleeper]].deadline;
+  }
+
   /// Disarms and returns the earliest timer whose deadline is not after now().
   /// @return the sleeper; or no_task when nothing is due
   [[nodiscard]] TaskId take_due() noexcept;

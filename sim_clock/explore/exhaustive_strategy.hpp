@@ -25,7 +25,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sim_clock/explore/dependence.hpp"
+#include "sim_clock/explore/decision_path.hpp"
+#include "sim_clock/explore/hash_set.hpp"
+#include "sim_clock/explore/step_races.hpp"
 #include "sim_clock/explore/strategy.hpp"
 
 namespace ltsim {
@@ -34,22 +36,26 @@ class World;
 
 /// What a proof covers, besides the faults that the scenario grants.
 struct ProofBounds {
-  std::optional<unsigned> preemptions;  ///< of tasks that could have gone on; none: any number
-  /// Only with a bound on preemptions. Stretches in which time goes on, from timer to timer, while some task that could run
-  /// takes no step. One may end after its first timer, and wherever somebody has done more than look (and sleep) since the
-  /// last: a task that looks in vain again and again, and at a clock, does so until its time is over.
-  unsigned silences = 0;
-  unsigned looks = 4;  ///< in vain, at the same thing, until a polling task waits for a change
+  std::optional<unsigned> preemptions{};  ///< of tasks that could have gone on; none: any number
+  /// Stretches in which time goes on, from timer to timer, while some task that could run takes no step; none: any number. One may
+  /// end after its first timer, and wherever somebody has done more than look (and sleep) since the last: a task that looks in vain
+  /// again and again, and at a clock, does so until its time is over. Only with a bound on preemptions, or with `states`.
+  std::optional<unsigned> silences{0};
+  unsigned looks =
+      4;  ///< in vain, at the same thing, until a polling task waits for a change; not with `states`
+  /// States are told apart, and one that was seen is left, instead of a reduction.
+  bool states = false;
 };
 
 class ExhaustiveStrategy final : public Strategy {
  public:
-  static constexpr std::size_t tasks_max = 60;
+  static constexpr std::size_t tasks_max = search_tasks_max;
+  static constexpr std::size_t states_max = std::size_t{1} << 28U;
   /// Of one execution; all that comes after them is by default.
   static constexpr std::size_t steps_max = 4096;
 
   /// @param world  whose scenario it explores; outlives this
-  ExhaustiveStrategy(World& world, ProofBounds bounds) : world_(world), bounds_(bounds) {}
+  ExhaustiveStrategy(World& world, ProofBounds bounds);
 
   /// After an execution: on to the next one. @return false: that was the last, or there is trouble()
   [[nodiscard]] bool advance();
@@ -61,14 +67,19 @@ class ExhaustiveStrategy final : public Strategy {
   /// In the last execution a task that polled could have gone on, and was made to wait.
   [[nodiscard]] bool was_held_back() const noexcept { return is_held_back_; }
   /// How much of the search is over, by what is known of it now: 0 to 1. More may turn up.
-  [[nodiscard]] double done() const noexcept;
+  [[nodiscard]] double done() const noexcept { return path_.done(); }
   /// What makes the search impossible, if something does.
-  [[nodiscard]] const std::string& trouble() const noexcept { return trouble_; }
+  [[nodiscard]] const std::string& trouble() const noexcept {
+    return trouble_.empty() ? path_.trouble() : trouble_;
+  }
+  /// How many states were told apart (ProofBounds::states).
+  [[nodiscard]] std::uint64_t states() noexcept { return states_.size(); }
 
   /// The search where it stands, one line a choice.
-  [[nodiscard]] std::string checkpoint() const;
+  [[nodiscard]] std::string checkpoint() const { return path_.checkpoint(); }
+  /// States that were told apart before are forgotten: some may be come to again.
   /// @return whether that was a checkpoint
-  [[nodiscard]] bool resume(std::string_view checkpoint);
+  [[nodiscard]] bool resume(std::string_view checkpoint) { return path_.resume(checkpoint); }
 
   [[nodiscard]] std::string_view name() const noexcept override { return "exhaustive"; }
   void begin_execution(std::uint64_t seed) noexcept override;
@@ -78,63 +89,39 @@ class ExhaustiveStrategy final : public Strategy {
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
   [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
   [[nodiscard]] bool points_cost_time() const noexcept override { return false; }
+  [[nodiscard]] bool looks_at_states() const noexcept override { return bounds_.states; }
   [[nodiscard]] bool follows_steps() const noexcept override { return true; }
   void performs(TaskId task, const Operation& operation) noexcept override;
   void resumes(TaskId task, const Operation& operation) noexcept override;
   void only_looked() noexcept override;
 
  private:
-  using Tasks = std::uint64_t;  // bit = number of a task
-  // Besides tasks, faults take steps, and time that passes when nobody can run.
-  static constexpr std::size_t the_barrier = tasks_max;
-  static constexpr std::size_t steppers_count = tasks_max + 1;
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr std::size_t steppers_count = tasks_max + 1;  // the_barrier is one
 
-  [[nodiscard]] static constexpr Tasks bit(std::size_t task) noexcept { return Tasks{1} << task; }
-
-  struct Decision {
-    bool is_of_tasks = false;
-    bool is_of_time = false;   // 1: time passes; it is tried first
-    std::uint32_t chosen = 0;  // a task, or a number
-    std::uint32_t count = 0;   // of numbers; those from chosen on are left (of time: those down to 0)
-    std::uint32_t events = 0;  // how many there were before
-    Tasks enabled = 0;
-    Tasks to_try = 0;  // all that must be chosen here some time
-    Tasks tried = 0;   // and was
-    Tasks asleep = 0;  // what they would do next was done before, and nothing since matters to it
-  };
-  struct Event {
-    std::size_t stepper = 0;
-    StepEffect effect;
-    std::uint32_t decisions = 0;    // how many there were before it
-    std::uint32_t woken_by = none;  // a step that is gone on with: the event that made that possible
-    // An event that comes before it: it made the task, or was the last of one that is joined.
-    std::uint32_t follows = none;
-    bool is_time = false;  // that passes; it has to come here
-    bool was_free = true;  // what it acts on, before, for those who take it: a mutex, a token of a semaphore
-  };
-
+  /// Neither the bound on preemptions nor states that are told apart is anything that the orders of one trace share.
+  [[nodiscard]] bool is_reduced() const noexcept { return !bounds_.preemptions && !bounds_.states; }
   /// Whether there have been steps_max, which counts as cut off.
   [[nodiscard]] bool is_too_long() noexcept {
-    is_cut_off_ = is_cut_off_ || events_.size() >= steps_max;
+    is_cut_off_ = is_cut_off_ || steps_.size() >= steps_max;
     return is_cut_off_;
   }
   /// The next decision: the one that is replayed, or a new one.
-  [[nodiscard]] Decision& next_decision(const Decision& as_new) noexcept;
+  [[nodiscard]] Decision& next_decision(Decision as_new) noexcept;
   [[nodiscard]] std::uint32_t decide_number(std::size_t count) noexcept;
-  void note_that_runs_differ();
   /// Ends the execution: it is redundant, or the search cannot go on.
   void leave() noexcept;
-  void begin_event(std::size_t stepper, const Operation& operation, bool is_resumed) noexcept;
+  std::size_t leave_as_redundant() noexcept;
+  /// @param runner  who could be preempted; or the_barrier
+  [[nodiscard]] bool is_new_state(std::size_t runner) noexcept;
+  void begin_step(std::size_t stepper, const Operation& operation, bool is_resumed) noexcept;
   void add_barrier(bool is_time) noexcept;
-  /// What happened since the last event besides it: who was woken, by whom or by time that passed by itself.
+  /// What happened since the last step besides it: who was woken, by whom or by time that passed by itself.
   void look_around() noexcept;
-  void wake_sleepers(const Event& event) noexcept;
-  [[nodiscard]] bool depend(const Event& one, const Event& other) const noexcept;
+  void wake_sleepers(const Step& step) noexcept;
   /// What is taken by those who lock and wait: whether one could.
   [[nodiscard]] bool is_free(const Operation& operation) const noexcept;
   /// Those who could take a step now.
-  [[nodiscard]] Tasks able() const noexcept;
+  [[nodiscard]] TaskBits able() const noexcept;
   /// Whether it is too late to end the silence, as somebody looks in vain again.
   [[nodiscard]] bool silence_goes_on() const noexcept { return silent_ != 0 && silence_steps_ > 1; }
   /// Whether the task, which can run, would only begin to wait. It is left where it stands then: that makes no difference to
@@ -142,40 +129,24 @@ class ExhaustiveStrategy final : public Strategy {
   [[nodiscard]] bool would_wait(std::size_t task) const noexcept;
   [[nodiscard]] StepEffect pending_of(std::size_t task) const noexcept;
 
-  /// Finds the races of the events from `replayed_events_` on, and adds what must be tried because of them.
-  void find_races();
-  /// Sees to it that `later` comes before `earlier`, too. @return whether that can be
-  bool reverse(std::uint32_t earlier, std::uint32_t later);
-  [[nodiscard]] std::uint32_t* clock_of(std::size_t event) noexcept {
-    return clocks_.data() + event * steppers_count;
-  }
-  [[nodiscard]] bool happens_before(std::size_t earlier, std::size_t later) noexcept {
-    return clock_of(later)[events_[earlier].stepper] > earlier;
-  }
-
   World& world_;
   ProofBounds bounds_;
   std::string trouble_;
-  std::vector<Decision> path_;
-  std::size_t at_ = 0;  // in path_, of the next decision
-  std::uint32_t replayed_events_ = 0;
-  Tasks asleep_ = 0;
-  Tasks polling_ = 0;
+  DecisionPath path_;
+  StepRaces steps_;
+  HashSet states_{states_max};
+  TaskBits asleep_ = 0;
+  TaskBits polling_ = 0;
   unsigned preemptions_ = 0;
   unsigned silences_ = 0;        // so far
   bool clock_was_used_ = false;  // since the last timer of a silence
   unsigned silence_steps_ = 0;   // of the last one, since somebody has done more than look
-  Tasks silent_ = 0;             // who has been so all through it
-  Tasks blocked_ = 0;
-  Tasks awaits_join_ = 0;
-  Tasks joined_ = 0;
-  std::vector<Event> events_;
-  // By event: per stepper, one more than its last event that happens before.
-  std::vector<std::uint32_t> clocks_;
-  std::vector<std::uint32_t> but_for_fixed_;  // a clock that is being made
-  std::vector<std::uint32_t> last_of_;        // by stepper: its last event
-  std::vector<std::uint32_t> woken_by_;       // by task
-  std::vector<std::uint32_t> follows_;        // by task: for its next event
+  TaskBits silent_ = 0;          // who has been so all through it
+  TaskBits blocked_ = 0;
+  TaskBits awaits_join_ = 0;
+  TaskBits joined_ = 0;
+  std::vector<std::uint32_t> woken_by_;  // by task
+  std::vector<std::uint32_t> follows_;   // by task: for its next event
   bool is_redundant_ = false;
   bool is_cut_off_ = false;
   bool is_held_back_ = false;

@@ -48,11 +48,16 @@ std::uint64_t Explorer::execute(const Scenario& scenario, Strategy& strategy, st
   strategy.begin_execution(seed);
   world_.reset(strategy, listener);
   try {
-    scenario.body(world_);
+    if (strategy.looks_at_states()) {
+      world_.whole_state().run(scenario.body);
+    } else {
+      scenario.body(world_);
+    }
   } catch (const World::Abandoned&) {
     // It has ended where the strategy let it end.
   }
   world_.end_execution();
+  world_.whole_state().end();
   if (world_.scheduler().run_is_missing()) {
     throw NotSimulable{fmt::format("{} makes tasks and never calls World::run()", scenario.name)};
   }

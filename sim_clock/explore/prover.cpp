@@ -33,13 +33,18 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
   world_.set_default_cpu(Cpu::many);
   const auto fill = [&] {
     report.done = strategy.done();
+    report.states = strategy.states();
     report.seconds =
         earlier.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
   try {
     // What is initialised on first use must be so in all executions alike.
-    ExhaustiveStrategy first{world_, options.bounds};
+    ExhaustiveStrategy first{world_, {}};
     static_cast<void>(explorer.execute(scenario, first, 0, nullptr));
+    if (options.bounds.states && world_.memory() == Memory::c11)
+      throw Explorer::NotSimulable{
+          "states are told apart with memory sc only: what of the past a weak memory "
+          "still shows is no part of them"};
     if (world_.scheduler().cpu() != Cpu::many)
       throw Explorer::NotSimulable{"the scenario has one processor: which orders matter there, is not known"};
     for (bool goes_on = true; goes_on;) {
@@ -88,20 +93,24 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
 
 std::string describe_bounds(const ProveOptions& options) {
   const ProofBounds& bounds = options.bounds;
-  return fmt::format("{} and {}{}, memory {}",
-                     bounds.preemptions ? "at most " + counted(*bounds.preemptions, "preemption")
-                                        : std::string{"any number of preemptions"},
-                     bounds.silences == 0 ? std::string{"no silence"} : counted(bounds.silences, "silence"),
-                     bounds.preemptions ? "" : ", one of each order that makes a difference",
+  const auto of_bound = [](const std::optional<unsigned>& bound, const char* what) {
+    return bound ? "at most " + counted(*bound, what) : fmt::format("any number of {}s", what);
+  };
+  const bool is_reduced = !bounds.preemptions && !bounds.states;
+  return fmt::format("{} and {}{}, memory {}", of_bound(bounds.preemptions, "preemption"),
+                     bounds.silences == 0U ? std::string{"no silence"} : of_bound(bounds.silences, "silence"),
+                     is_reduced ? ", one of each order that makes a difference" : "",
                      to_string(options.memory));
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {
+  const std::string states =
+      options.bounds.states ? fmt::format("{} in ", counted(report.states, "state")) : std::string{};
   const std::string held_back =
       report.held_back == 0 ? std::string{}
                             : fmt::format("; in {} of them a task that polled waited for a change after {}",
                                           report.held_back, counted(options.bounds.looks, "look"));
-  return fmt::format("{}{} with {}; {} cut off{}", report.complete ? "all " : "",
+  return fmt::format("{}{}{} with {}; {} cut off{}", report.complete ? "all " : "", states,
                      counted(report.executions, "execution"), describe_bounds(options), report.cut_off,
                      held_back);
 }

@@ -107,6 +107,9 @@ class Strategy {
   [[nodiscard]] virtual bool points_cost_time() const noexcept { return true; }
   /// Whether the strategy wants to be told each step by performs(). Asked once an execution.
   [[nodiscard]] virtual bool follows_steps() const noexcept { return false; }
+  /// Whether choose_task() is to be called while every task stands still, so that World::whole_state() can be asked. Asked once an
+  /// execution.
+  [[nodiscard]] virtual bool looks_at_states() const noexcept { return false; }
   /// `task` goes on and performs `operation`, whether or not there was a choice.
   virtual void performs(TaskId /*task*/, const Operation& /*operation*/) noexcept {}
   /// `task` goes on with its operation, which it had to wait in.

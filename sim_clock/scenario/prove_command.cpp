@@ -1,5 +1,6 @@
 // ltsim prove: runs all executions of a scenario within bounds, and says exactly what was covered.
 
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -57,6 +58,16 @@ class ProgressOfProof {
   double shown_at_ = 0;
 };
 
+/// @param text  a number, or "any"
+std::optional<unsigned> to_silences(const std::string& text) {
+  if (text == "any") return std::nullopt;
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw CLI::ValidationError{"--silences", fmt::format("\"{}\" is no whole number, nor \"any\"", text)};
+  return number;
+}
+
 /// What an earlier run has left, if it was of the same search.
 /// @throw UsageError if the file is of another one, or cannot be read
 ProveReport earlier_part(const ProveArguments& arguments, const std::string& path) {
@@ -86,9 +97,14 @@ int tell_failure(const ProveArguments& arguments, std::string_view program, cons
 }
 
 int prove(const ProveArguments& arguments, std::string_view program) {
-  if (arguments.options.bounds.silences != 0 && !arguments.options.bounds.preemptions)
+  const ProofBounds& bounds = arguments.options.bounds;
+  if (bounds.silences != 0U && !bounds.preemptions && !bounds.states)
     throw UsageError{
-        "--silences needs --preemptions: where time may pass at any moment, only a bounded search ends"};
+        "--silences needs --preemptions or --states: where time may pass at any moment, the orders that make "
+        "no "
+        "difference are not known"};
+  if (!bounds.silences && !bounds.states)
+    throw UsageError{"--silences any needs --states: otherwise only a bounded search ends"};
   const Scenario& scenario = scenario_of_name(arguments.scenario);
   const std::string checkpoint_path =
       arguments.checkpoint_file.empty() ? file_of_scenario(arguments.out_folder, arguments.scenario, ".proof")
@@ -137,10 +153,18 @@ void add_prove_command(CLI::App& app, Command& chosen) {
                       "then only one of the "
                       "orders that make no difference is run");
   command
-      ->add_option("--silences", arguments->options.bounds.silences,
-                   "with --preemptions: so often time may go on, from timer to timer, while some task that "
-                   "could run takes no step")
-      ->capture_default_str();
+      ->add_option_function<std::string>(
+          "--silences",
+          [arguments](const std::string& text) { arguments->options.bounds.silences = to_silences(text); },
+          "with --preemptions or --states: so often time may go on, from timer to timer, while some task "
+          "that "
+          "could run takes no step; \"any\" with --states: any number")
+      ->default_str("0")
+      ->check(CLI::NonNegativeNumber | CLI::IsMember({"any"}));
+  command->add_flag(
+      "--states", arguments->options.bounds.states,
+      "tell states apart by the whole memory, and go on from each of them once, instead of leaving "
+      "out orders that make no difference: for few states and many ways to them; memory sc only");
   command
       ->add_option(
           "--looks", arguments->options.bounds.looks,

@@ -19,21 +19,20 @@ using ltsim::Segments;
 /// Out of line, so that the announcement of an unshared access is a subtraction, a comparison and a return.
 [[gnu::noinline]] void watched_access(const volatile void* address, std::size_t bytes, OperationKind kind,
                                       const void* caller) noexcept {
+  if (kind == OperationKind::write) ltsim::WholeState::written(address);
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return;
   if (Segments::contains(address)) {
     ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
   } else {
-    self->world->weak_memory().written_plainly(address,
-                                               bytes);  // where an atomic object was, or is being made
+    // Where an atomic object was, or is being made.
+    self->world->weak_memory().written_plainly(address, bytes);
   }
 }
 
-/// Whether an access there concerns the world: it lies in a segment, or is a write while memory is weak.
+/// Whether an access there concerns the world: it lies in a segment, or is a write that somebody must know of.
 inline bool is_watched(const volatile void* address, OperationKind kind) noexcept {
-  if (kind == OperationKind::read) return Segments::contains(address);
-  return reinterpret_cast<std::uintptr_t>(address) - Segments::range_begin <
-         ltsim::WeakMemory::watched_bytes();
+  return kind == OperationKind::read ? Segments::contains(address) : ltsim::is_watched_write(address);
 }
 
 /// @param caller  the return address of the announcement: it stands in the code under test

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace ltsim {
 
@@ -56,6 +57,13 @@ class Context {
         : "rax", "rcx", "rdx", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "xmm0", "xmm1", "xmm2",
           "xmm3", "xmm4", "xmm5", "xmm6", "xmm7", "xmm8", "xmm9", "xmm10", "xmm11", "xmm12", "xmm13", "xmm14",
           "xmm15", "cc", "memory");
+  }
+
+  /// While suspended.
+  [[nodiscard]] void* stack_pointer() const noexcept { return registers_.stack_pointer; }
+  /// While suspended: what is kept of the registers, the stack pointer included.
+  [[nodiscard]] std::span<const std::byte> registers() const noexcept {
+    return std::as_bytes(std::span{&registers_, 1});
   }
 
   /// Somebody is about to look at or to change the floating-point environment: contexts have their own ones from

@@ -74,4 +74,8 @@ void Damages::strike(Grant& grant, std::span<std::byte> memory, std::size_t way)
   });
 }
 
+void Damages::add_state(StateHash& hash) const noexcept {
+  for (const Grant& grant : grants_) hash.add(grant.left);
+}
+
 }  // namespace ltsim

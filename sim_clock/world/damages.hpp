@@ -15,6 +15,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 
 class Damages {
@@ -27,6 +28,8 @@ class Damages {
   void grant(FaultKind kind, std::string_view segment, std::uint32_t offset, std::uint32_t bytes,
              unsigned times);
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   [[nodiscard]] bool are_possible() const noexcept { return left_ != 0; }
   /// Asks whether the segment is damaged here, and damages it.
   /// @param memory  all its bytes

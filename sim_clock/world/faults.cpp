@@ -83,4 +83,10 @@ void Faults::crash(ProcessId id) {
   process.died(crashes_[id].restart_after);
 }
 
+void Faults::add_state(StateHash& hash) const noexcept {
+  for (const std::uint32_t left : left_) hash.add(left);
+  for (const CrashGrant& grant : crashes_) hash.add(grant.times);
+  for (const std::uint32_t left : stalls_left_) hash.add(left);
+}
+
 }  // namespace ltsim

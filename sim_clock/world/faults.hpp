@@ -21,6 +21,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 
 /// How a process may crash.
@@ -40,6 +41,8 @@ class Faults {
   void grant_crashes(ProcessId process, CrashGrant grant) noexcept;
   void grant_stalls(ProcessId process, unsigned times) noexcept;
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   /// Whether the fault strikes at this place, in one of so many ways.
   /// @param variants_count  >= 1
   /// @return                0: it does not; otherwise 1 to variants_count

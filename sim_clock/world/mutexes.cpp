@@ -373,4 +373,13 @@ int Mutexes::futex_wake(const std::uint32_t* word, std::size_t count_max, bool s
   return static_cast<int>(world_.scheduler().wake(key, count_max));
 }
 
+void Mutexes::add_state(StateHash& hash) const noexcept {
+  hash.add(std::uint64_t{locks_.size()} << 32U | robust_held_.size());
+  for (const Lock& lock : locks_) hash.add(std::uint64_t{lock.object} << 32U | lock.owner_plus_one);
+  for (const RobustHeld& held : robust_held_) {
+    hash.add_word(reinterpret_cast<std::uintptr_t>(held.address));
+    hash.add(held.owner);
+  }
+}
+
 }  // namespace ltsim

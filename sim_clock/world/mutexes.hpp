@@ -26,11 +26,15 @@
 
 namespace ltsim {
 
+class StateHash;
+
 class Mutexes {
  public:
   explicit Mutexes(World& world) noexcept : world_(world) {}
   void reset() noexcept;
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   // The calls, for the running task; they return 0 or an error number as POSIX.1-2017 lists them.
   int lock(pthread_mutex_t* mutex) noexcept;
   int try_lock(pthread_mutex_t* mutex) noexcept;

@@ -18,6 +18,7 @@ constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]] = n
 void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   strategy_ = &strategy;
   strategy_follows_steps_ = strategy.follows_steps();
+  decides_apart_ = strategy.looks_at_states();
   point_cost_ = strategy.points_cost_time() ? point_cost : SimTime{0};
   listener_ = listener;
   running_ = nullptr;
@@ -91,6 +92,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
+  if (decides_apart_) task.storage->clean_stack_below(task.storage->stack_top());
   task.context.prepare(task.storage->stack_top(), task.storage->thread_pointer(), &run_task, &task);
   world_.checks().task_begins(task.id);
   ++unfinished_count_;
@@ -121,6 +123,12 @@ void Scheduler::run() {
   has_run_ = true;
   if (!outcome_.passed() || unfinished_count_ == 0) return;
   main_context_.adopt_current();
+  if (decides_apart_) {
+    if (decider_storage_ == nullptr) decider_storage_ = std::make_unique<TaskStorage>();
+    decider_storage_->reset();
+    decider_context_.prepare(decider_storage_->stack_top(), decider_storage_->thread_pointer(), &run_decider,
+                             this);
+  }
   const auto options = candidates(0);
   running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options, 0, false)].get();
   Context::switch_between(main_context_, running_->context);
@@ -332,7 +340,8 @@ Task* Scheduler::next_after_stop() noexcept {
   while (runnable_count_ == 0) nobody_can_run();
   if (clock_.any_armed()) let_time_pass(false);
   const auto options = candidates(0);
-  return tasks_[options.size() == 1 ? options[0] : choose_task(options, running_->id, false)].get();
+  const bool is_forced = options.size() == 1 && !decides_apart_;
+  return tasks_[is_forced ? options[0] : choose_task(options, running_->id, false)].get();
 }
 
 void Scheduler::nobody_can_run() noexcept {
@@ -356,6 +365,8 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
   choice_.options = options;
   choice_.running = running;
   choice_.running_gives_way = running_gives_way;
+  if (decides_apart_ && running_ != nullptr) [[unlikely]]
+    return decide_apart();
   return static_cast<TaskId>(options[strategy_->choose_task(choice_)]);
 }
 

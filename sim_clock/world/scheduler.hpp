@@ -30,6 +30,8 @@
 
 namespace ltsim {
 
+class StateHash;
+
 class Scheduler {
  public:
   /// What one scheduling point costs in virtual time: enough that a loop that polls a clock ends.
@@ -159,8 +161,17 @@ class Scheduler {
   /// The operation at whose scheduling point the task stands or that it last passed.
   [[nodiscard]] const Operation& pending(const Task& task) const noexcept { return pending_[task.id]; }
   [[nodiscard]] StepListener* listener() noexcept { return listener_; }
+  /// The task that runs, or ran up to here; null outside run().
+  [[nodiscard]] Task* const& running() const noexcept { return running_; }
+  /// While tasks run: that of who called run().
+  [[nodiscard]] const void* main_stack_pointer() const noexcept { return main_context_.stack_pointer(); }
+  /// What of it decides what can follow; the stacks of the tasks are among that.
+  void add_state(StateHash& hash) const noexcept;
 
  private:
+  /// The strategy is asked while all tasks stand still; the one that it has chosen finds that the choice fell on it.
+  TaskId decide_apart() noexcept;
+  static void run_decider(void* scheduler) noexcept;
   void set_name(Task& task, ProcessId process, std::string_view name);
   static void run_task(void* task) noexcept;
   void finish_running() noexcept;
@@ -224,6 +235,8 @@ class Scheduler {
   StepListener* listener_ = nullptr;
   Task* running_ = nullptr;
   Context main_context_;
+  Context decider_context_;
+  std::unique_ptr<TaskStorage> decider_storage_;  // once it is needed
   VirtualClock clock_;
 
   std::array<std::uint64_t, tasks_max / 64> runnable_{};   // bit = task number
@@ -250,6 +263,7 @@ class Scheduler {
   bool clock_was_read_ = false;
   bool has_run_ = false;
   bool strategy_follows_steps_ = false;
+  bool decides_apart_ = false;
   SimTime point_cost_{point_cost};
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;

@@ -386,4 +386,23 @@ Segments::Segment* Segments::of_descriptor(int descriptor) noexcept {
   return found == nullptr ? nullptr : &segments_[found->segment];
 }
 
+void Segments::add_state(StateHash& hash) const noexcept {
+  hash.add(segments_count_);
+  for (std::size_t i = 0; i < segments_count_; ++i) {
+    const Segment& segment = segments_[i];
+    hash.add(std::uint64_t{segment.bytes} << 1U | std::uint64_t{segment.linked});
+    hash.add_memory(all_ + (i << window_shift), segment.used_bytes);
+  }
+  for (std::size_t i = 0; i < windows_.size(); ++i) {
+    const Window& window = windows_[i];
+    if (window.mapped)
+      hash.add(i << 33U | std::uint64_t{window.bytes} << 1U | std::uint64_t{window.writable});
+  }
+  hash.add(descriptors_.size());
+  for (const Descriptor& descriptor : descriptors_) {
+    hash.add(std::uint64_t{descriptor.segment} << 16U | std::uint64_t{descriptor.process} << 2U |
+             std::uint64_t{descriptor.open} << 1U | std::uint64_t{descriptor.writable});
+  }
+}
+
 }  // namespace ltsim

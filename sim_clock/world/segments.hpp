@@ -26,6 +26,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 
 class Segments {
@@ -105,6 +106,8 @@ class Segments {
   /// The process is gone, and with it its mappings and descriptors. What is in the segments stays.
   void process_died(ProcessId process) noexcept;
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   /// What memory holds now where `operation` acts, as an unsigned number; of longer accesses the first eight
   /// bytes.
   [[nodiscard]] std::uint64_t value_at(const Operation& operation) const noexcept;

@@ -244,4 +244,12 @@ WaitKey Semaphores::key_of(const Semaphore& semaphore) noexcept {
   return std::uint64_t{1} << 62U | process << 32U | semaphore.object;
 }
 
+void Semaphores::add_state(StateHash& hash) const noexcept {
+  hash.add(count_);
+  for (std::size_t i = 0; i < count_; ++i) {
+    hash.add(std::uint64_t{semaphores_[i].value} << 33U | std::uint64_t{semaphores_[i].linked} << 32U |
+             semaphores_[i].object);
+  }
+}
+
 }  // namespace ltsim

@@ -22,6 +22,7 @@
 
 namespace ltsim {
 
+class StateHash;
 class World;
 
 class Semaphores {
@@ -48,6 +49,8 @@ class Semaphores {
   [[nodiscard]] unsigned value_of(ObjectId object) const noexcept;
   void leave(std::string_view path, unsigned value);
 
+  /// What of it decides what can follow.
+  void add_state(StateHash& hash) const noexcept;
   // The calls, for the running task; errors as POSIX.1-2017 lists them, in errno.
   /// After its scheduling point, which is the caller's: another task may come back from there, and each function it has to
   /// leave is one that the processor does not foresee.

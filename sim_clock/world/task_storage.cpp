@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/world/state_hash.hpp"
 #include "sim_clock/world/thread_pointer.hpp"
 
 // Exported by glibc for its own parts (GLIBC_PRIVATE) and used by debuggers and sanitizers too: the
@@ -75,6 +76,10 @@ const ThreadLocals& thread_locals_to_reset() {
   return all;
 }
 
+std::ptrdiff_t errno_from_thread_pointer() noexcept {
+  return reinterpret_cast<char*>(&errno) - static_cast<char*>(current_thread_pointer());
+}
+
 /// Of all tasks of all worlds; a scenario may hold a thread of a task longer than the execution lasts.
 std::vector<const void*>& thread_pointers_of_tasks() {
   static std::vector<const void*> all;
@@ -123,9 +128,40 @@ void TaskStorage::reset() noexcept {
     std::memcpy(base + from_thread_pointer, &initial_value, sizeof initial_value);
   for (const auto& [from_thread_pointer, initial_value] : all.bytes)
     std::memcpy(base + from_thread_pointer, &initial_value, sizeof initial_value);
-  const std::ptrdiff_t errno_from_thread_pointer =
-      reinterpret_cast<char*>(&errno) - static_cast<char*>(current_thread_pointer());
-  std::memset(base + errno_from_thread_pointer, 0, sizeof errno);
+  std::memset(base + errno_from_thread_pointer(), 0, sizeof errno);
+}
+
+void TaskStorage::add_state(StateHash& hash) const noexcept {
+  const char* const base = static_cast<const char*>(thread_pointer_);
+  const ThreadLocals& all = thread_locals_to_reset();
+  for (const auto& local : all.words)
+    hash.add_memory(base + local.from_thread_pointer, sizeof(std::uint64_t));
+  for (const auto& local : all.bytes) hash.add_memory(base + local.from_thread_pointer, 1);
+  hash.add_memory(base + errno_from_thread_pointer(), sizeof errno);
+}
+
+void TaskStorage::clean_stack_below(void* stack_pointer) const noexcept {
+  constexpr std::size_t red_zone_bytes =
+      128;  // System V ABI for x86-64, 3.2.2: in use, below the stack pointer
+  constexpr std::size_t bytes_max = 8192;
+  char* const end = static_cast<char*>(stack_pointer) - red_zone_bytes;
+  char* const lowest = static_cast<char*>(stack_base_) + guard_bytes;
+  char* const begin = end - lowest > static_cast<std::ptrdiff_t>(bytes_max) ? end - bytes_max : lowest;
+  if (begin < end) std::memset(begin, 0, static_cast<std::size_t>(end - begin));
+}
+
+bool TaskStorage::contains(std::uintptr_t address) const noexcept {
+  const auto number_of = [](const void* of) { return reinterpret_cast<std::uintptr_t>(of); };
+  if (address >= number_of(stack_base_) && address < number_of(stack_top_)) return true;
+  const std::uintptr_t base = number_of(thread_pointer_);
+  if (address == base + static_cast<std::uintptr_t>(errno_from_thread_pointer())) return true;
+  const ThreadLocals& all = thread_locals_to_reset();
+  const auto is_of = [&](const auto& local) {
+    return address - (base + static_cast<std::uintptr_t>(local.from_thread_pointer)) <
+           sizeof(local.initial_value);
+  };
+  return std::any_of(all.words.begin(), all.words.end(), is_of) ||
+         std::any_of(all.bytes.begin(), all.bytes.end(), is_of);
 }
 
 bool TaskStorage::is_of_a_task(const void* thread_pointer) noexcept {

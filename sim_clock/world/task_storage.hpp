@@ -7,8 +7,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace ltsim {
+
+class StateHash;
 
 class TaskStorage {
  public:
@@ -25,6 +28,14 @@ class TaskStorage {
 
   /// Initial values for every thread-local but those of libc; errno = 0.
   void reset() noexcept;
+  /// All that reset() resets.
+  void add_state(StateHash& hash) const noexcept;
+  /// Fills with zeros what lies below the stack pointer of a task that stands still: so much that what comes after finds few words
+  /// of what was called before.
+  /// @param stack_pointer  in the stack, or its top
+  void clean_stack_below(void* stack_pointer) const noexcept;
+  /// Whether the address lies in the stack or among the thread-locals.
+  [[nodiscard]] bool contains(std::uintptr_t address) const noexcept;
 
   [[nodiscard]] void* thread_pointer() const noexcept { return thread_pointer_; }
   [[nodiscard]] void* stack_top() const noexcept { return stack_top_; }

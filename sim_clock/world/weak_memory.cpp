@@ -49,7 +49,7 @@ void write_memory(const volatile void* address, std::uint8_t bytes, std::uint64_
 void WeakMemory::reset() noexcept {
   if (!on_) return;
   on_ = false;
-  watched_bytes_ = Segments::range_bytes;
+  watch_all_writes(false);
   locations_count_ = 0;
   may_hold_location_.fill(0);
   began_after_.fill(0);

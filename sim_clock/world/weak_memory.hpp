@@ -27,6 +27,7 @@
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/seq_cst_order.hpp"
 #include "sim_clock/world/task.hpp"
+#include "sim_clock/world/watched_writes.hpp"
 
 namespace ltsim {
 
@@ -57,11 +58,9 @@ class WeakMemory {
   /// In this execution memory is weak. Before the first task begins.
   void turn_on() noexcept {
     on_ = true;
-    watched_bytes_ = ~std::size_t{0};
+    watch_all_writes(true);
   }
   [[nodiscard]] bool on() const noexcept { return on_; }
-  /// Writes to so many bytes from Segments::range_begin on concern the only world: those of the segments, or all there are.
-  [[nodiscard]] static std::size_t watched_bytes() noexcept { return watched_bytes_; }
 
   Result access(const Access& access);
   void fence(TaskId task, int order);
@@ -142,8 +141,6 @@ class WeakMemory {
   void drop_oldest(Location& location);
   /// Makes room for one more event.
   void make_room_for_event() noexcept;
-
-  static inline constinit std::size_t watched_bytes_ = Segments::range_bytes;
 
   World& world_;
   bool on_ = false;

@@ -160,8 +160,7 @@ void World::set_input(std::vector<std::string> records) {
 }
 
 void World::reset(Strategy& strategy, StepListener* listener) {
-  static std::uint64_t executions_ever = 0;  // of all worlds
-  execution_number_ = execution_number_mark << execution_number_bits | ++executions_ever;
+  execution_number_ = ++last_execution_number_;
   random_draws_count_ = 0;
   wall_clock_ahead_ = wall_clock_epoch;
   in_execution = this;
@@ -179,6 +178,26 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   fetches_.reset();
   written_first_.reset();
   processes_count_ = 0;
+}
+
+void World::add_state(StateHash& hash) const noexcept {
+  scheduler_.add_state(hash);
+  segments_.add_state(hash);
+  semaphores_.add_state(hash);
+  mutexes_.add_state(hash);
+  faults_.add_state(hash);
+  damages_.add_state(hash);
+  fetches_.add_state(hash);
+  written_first_.add_state(hash);
+  hash.add(static_cast<std::uint64_t>(wall_clock_ahead_.count()));
+  hash.add(random_draws_count_);
+  for (std::size_t i = 0; i < processes_count_; ++i) {
+    const Process& process = *processes_[i];
+    hash.add(process.threads_created_count_);
+    hash.add(process.incarnation_);
+    hash.add(process.crashes_);
+    hash.add(static_cast<std::uint64_t>(process.begin_.count()));
+  }
 }
 
 void World::set_memory(Memory memory) {

@@ -39,6 +39,7 @@
 #include "sim_clock/world/semaphores.hpp"
 #include "sim_clock/world/threads.hpp"
 #include "sim_clock/world/weak_memory.hpp"
+#include "sim_clock/world/whole_state.hpp"
 
 namespace ltsim {
 
@@ -253,6 +254,9 @@ class World {
   /// What no execution before this one has shown, since Coverage::forget().
   [[nodiscard]] Coverage& coverage() noexcept { return checks_.coverage(); }
 
+  /// Everything besides memory that decides what can follow; stacks are among it.
+  void add_state(StateHash& hash) const noexcept;
+
   // --- for the takeover functions ---
 
   /// Outside any task, but while a scenario sets up or checks: a real kernel object made here would not be
@@ -279,6 +283,7 @@ class World {
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
   [[nodiscard]] Damages& damages() noexcept { return damages_; }
+  [[nodiscard]] WholeState& whole_state() noexcept { return whole_state_; }
 
   [[nodiscard]] std::size_t processes_count() const noexcept { return processes_count_; }
   [[nodiscard]] Process& process(ProcessId id) noexcept { return *processes_[id]; }
@@ -326,8 +331,10 @@ class World {
   [[nodiscard]] static TaskId task_of_join_key(WaitKey key) noexcept { return static_cast<TaskId>(key); }
 
  private:
-  static constexpr unsigned execution_number_bits = 40;
+  static constexpr unsigned execution_number_bits = StateHash::number_bits;
   static constexpr std::uint64_t execution_number_mark = 0x6c7453;
+  // Of the last execution, of whichever world; with the mark, so that whoever comes upon it knows it for what it is.
+  static inline std::uint64_t last_execution_number_ = execution_number_mark << execution_number_bits;
 
   Scheduler scheduler_{*this};
   ObjectNames objects_;
@@ -341,6 +348,7 @@ class World {
   Damages damages_{*this};
   SingleFetch fetches_{*this};
   WrittenFirst written_first_{*this};
+  WholeState whole_state_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;

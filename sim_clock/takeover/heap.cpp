@@ -1,0 +1,88 @@
+// malloc(3) and its kind, for the whole program: who looks at the whole state of a world must know each block (world/heap.hpp).
+// Nothing else is changed: the memory is libc's.
+
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+#include "sim_clock/world/heap.hpp"
+
+// Exported by glibc for those who stand in front of malloc.
+extern "C" void* __libc_malloc(std::size_t bytes);
+extern "C" void* __libc_calloc(std::size_t count, std::size_t bytes);
+extern "C" void* __libc_realloc(void* block, std::size_t bytes);
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+extern "C" void __libc_free(void* block);
+
+namespace {
+
+using ltsim::Heap;
+
+[[gnu::noinline]] void* entered(void* block, std::size_t bytes) noexcept {
+  if (block == nullptr) return nullptr;
+  std::memset(block, 0, bytes);
+  Heap::allocated(block, bytes);
+  return block;
+}
+
+[[gnu::noinline]] void* entered_again(void* block, std::size_t bytes) noexcept {
+  const std::size_t before = Heap::bytes_of(block);
+  void* const other = entered(__libc_malloc(bytes), bytes);
+  if (other == nullptr) return nullptr;
+  std::memcpy(other, block, before < bytes ? before : bytes);
+  Heap::freed(block);
+  __libc_free(block);
+  return other;
+}
+
+void* allocate_aligned(std::size_t alignment, std::size_t bytes) noexcept {
+  void* const block = __libc_memalign(alignment, bytes);
+  return Heap::is_on() ? entered(block, bytes) : block;
+}
+
+}  // namespace
+
+extern "C" void* malloc(std::size_t bytes) {
+  if (Heap::is_on()) [[unlikely]]
+    return entered(__libc_malloc(bytes), bytes);
+  return __libc_malloc(bytes);
+}
+
+extern "C" void* calloc(std::size_t count, std::size_t bytes) {
+  void* const block = __libc_calloc(count, bytes);
+  if (Heap::is_on() && block != nullptr) [[unlikely]]
+    Heap::allocated(block, count * bytes);
+  return block;
+}
+
+extern "C" void* realloc(void* block, std::size_t bytes) {
+  if (Heap::is_on() && block == nullptr) [[unlikely]]
+    return entered(__libc_malloc(bytes), bytes);
+  if (Heap::has_blocks() && Heap::bytes_of(block) != 0) [[unlikely]] {
+    if (bytes != 0) return entered_again(block, bytes);
+    Heap::freed(block);
+  }
+  return __libc_realloc(block, bytes);
+}
+
+extern "C" void free(void* block) {
+  if (Heap::has_blocks()) [[unlikely]]
+    Heap::freed(block);
+  __libc_free(block);
+}
+
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t bytes) {
+  return allocate_aligned(alignment, bytes);
+}
+
+extern "C" void* memalign(std::size_t alignment, std::size_t bytes) {
+  return allocate_aligned(alignment, bytes);
+}
+
+extern "C" int posix_memalign(void** into, std::size_t alignment, std::size_t bytes) {
+  if (alignment % sizeof(void*) != 0 || (alignment & (alignment - 1)) != 0 || alignment == 0) return EINVAL;
+  void* const block = allocate_aligned(alignment, bytes);
+  if (block == nullptr) return ENOMEM;
+  *into = block;
+  return 0;
+}

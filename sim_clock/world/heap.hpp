@@ -1,0 +1,75 @@
+// The blocks of the heap that the code under test has, for who looks at the whole state of a world (whole_state.hpp).
+//
+// While it is on, each block that is allocated is entered, by malloc and by all that calls it, and is filled with zeros: what it
+// holds then follows from what the program did. A block has a name that does not depend on where it lies: who allocated it, and
+// as which of his blocks.
+//
+// Off, an allocation costs one branch more than without it. For programs of one system thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "sim_clock/world/task.hpp"
+
+namespace ltsim {
+
+class Heap {
+ public:
+  /// Most blocks at a time.
+  static constexpr std::size_t blocks_max = std::size_t{1} << 16U;
+
+  struct Block {
+    std::uintptr_t begin = 0;
+    std::size_t bytes = 0;  // >= 1
+    std::uint64_t name = 0;
+  };
+
+  [[nodiscard]] static bool is_on() noexcept { return is_on_; }
+
+  /// From here on blocks are entered; there are none yet.
+  /// @param running  the task that runs, at any time until end(); null: none
+  static void begin(Task* const& running) noexcept;
+  /// Forgets all blocks.
+  static void end() noexcept;
+  /// There were more than blocks_max at a time: some are missing.
+  [[nodiscard]] static bool overflowed() noexcept { return overflowed_; }
+
+  /// While it lives, what is allocated is no block of the code under test.
+  class Pause {
+   public:
+    Pause() noexcept : was_on_(is_on_) { is_on_ = false; }
+    ~Pause() { is_on_ = was_on_; }
+    Pause(const Pause&) = delete;
+    Pause& operator=(const Pause&) = delete;
+
+   private:
+    bool was_on_;
+  };
+
+  [[nodiscard]] static bool has_blocks() noexcept { return count_ != 0; }
+  /// In the order of their addresses.
+  [[nodiscard]] static std::span<const Block> blocks() noexcept { return {blocks_, count_}; }
+  /// The block that the address lies in, or is the end of; null: none.
+  [[nodiscard]] static const Block* find(std::uintptr_t address) noexcept;
+
+  // --- for takeover/heap.cpp ---
+
+  /// @param begin  filled with zeros already, or with what was in a block that this one is in place of
+  static void allocated(const void* begin, std::size_t bytes) noexcept;
+  /// A block that is not listed is left alone.
+  static void freed(const void* begin) noexcept;
+  /// Of a block that is listed; otherwise 0.
+  [[nodiscard]] static std::size_t bytes_of(const void* begin) noexcept;
+
+ private:
+  static inline bool is_on_ = false;
+  static inline bool overflowed_ = false;
+  static inline Block* blocks_ = nullptr;  // of the system itself: what allocates must not allocate
+  static inline std::size_t count_ = 0;
+  static inline Task* const* running_ = nullptr;
+  static inline std::uint32_t* allocated_by_ = nullptr;  // by task: how many so far; the last one: by none
+};
+
+}  // namespace ltsim

@@ -1,0 +1,69 @@
+// A hash of memory that is the same wherever in the heap the code under test has its blocks.
+//
+// A word that holds an address in one of them (world/heap.hpp) goes in as that block's name and the distance from its begin. Of the
+// number of an execution, which the world writes into objects of its own, only whether it is this one goes in.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "sim_clock/world/heap.hpp"
+
+namespace ltsim {
+
+class StateHash {
+ public:
+  /// The bits in which the numbers of executions differ are the lowest; what is above tells them from other words.
+  static constexpr unsigned number_bits = 40;
+
+  explicit StateHash(std::uint64_t execution_number) noexcept : execution_number_(execution_number) {
+    if (Heap::has_blocks()) {
+      heap_begin_ = Heap::blocks().front().begin;
+      heap_bytes_ = Heap::blocks().back().begin + Heap::blocks().back().bytes - heap_begin_;
+    }
+  }
+
+  /// A number that is no address.
+  void add(std::uint64_t number) noexcept { hash_ = std::rotl((hash_ ^ number) * 0x9e3779b97f4a7c15U, 29); }
+
+  void add_word(std::uint64_t word) noexcept {
+    if (word - heap_begin_ <= heap_bytes_) [[unlikely]] {
+      if (const Heap::Block* const block = Heap::find(word); block != nullptr) {
+        add(block->name ^ heap_mark);
+        add(word - block->begin);
+        return;
+      }
+    }
+    if (((word ^ execution_number_) >> number_bits) == 0) [[unlikely]]
+      word = word == execution_number_ ? this_execution : an_earlier_execution;
+    add(word);
+  }
+
+  void add_memory(const void* begin, std::size_t bytes) noexcept {
+    const auto* at = static_cast<const std::byte*>(begin);
+    for (; bytes >= sizeof(std::uint64_t); at += sizeof(std::uint64_t), bytes -= sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, at, sizeof word);
+      add_word(word);
+    }
+    std::uint64_t rest = 0;
+    std::memcpy(&rest, at, bytes);
+    if (bytes != 0) add(rest);
+  }
+
+  [[nodiscard]] std::uint64_t value() const noexcept { return hash_ ^ hash_ >> 32U; }
+
+ private:
+  static constexpr std::uint64_t heap_mark = 0xb10c'0000'0000'0000U;
+  static constexpr std::uint64_t this_execution = 0xe8ec'0000'0000'0001U;
+  static constexpr std::uint64_t an_earlier_execution = 0xe8ec'0000'0000'0000U;
+
+  std::uint64_t hash_ = 0;
+  std::uint64_t execution_number_;
+  std::uintptr_t heap_begin_ = 0;
+  std::uintptr_t heap_bytes_ = 0;
+};
+
+}  // namespace ltsim

@@ -1,0 +1,60 @@
+// The whole state of an execution as one number: two executions that are in equal states have the same futures.
+//
+// What goes in: the stacks, registers and thread-locals of the tasks; what they wait for, and how long; the scenario's own stack;
+// the heap blocks that were made since the execution began; the variables of the program; segments, semaphores, mutexes,
+// descriptors; the clock; faults that are still granted. What checks of a scenario keep is memory like any other.
+//
+// Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. So do
+// weak memory, whose histories do not go in, and one processor.
+//
+// What does not go in, since it decides nothing: how many steps were taken; and what the race detector remembers. A race that shows
+// only on one of two ways into the same state may go unseen.
+//
+// Words that the code does not need any more stay on stacks and in registers. They make two states of one, never one of two. The
+// stack below a task that stands still is filled with zeros, so there are few.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "sim_clock/world/state_hash.hpp"
+
+namespace ltsim {
+
+class World;
+
+class WholeState {
+ public:
+  explicit WholeState(World& world) noexcept : world_(world) {}
+  ~WholeState() { end(); }
+  WholeState(const WholeState&) = delete;
+  WholeState& operator=(const WholeState&) = delete;
+
+  /// Runs the scenario so that hash() can be called.
+  void run(const std::function<void(World&)>& scenario);
+  /// The execution is over. Without run() it does nothing.
+  void end() noexcept;
+
+  /// While every task stands still: Strategy::looks_at_states().
+  [[nodiscard]] std::uint64_t hash();
+
+  /// Code under test, or a check of the scenario, is about to write there.
+  static void written(const volatile void* address) noexcept {
+    if (active_ != nullptr) active_->check_write(reinterpret_cast<std::uintptr_t>(address));
+  }
+
+ private:
+  [[gnu::noinline]] void run_from_here(const std::function<void(World&)>& scenario);
+  void check_write(std::uintptr_t address) noexcept;
+  void add_variables(StateHash& hash) const noexcept;
+
+  static inline WholeState* active_ = nullptr;
+
+  World& world_;
+  std::uintptr_t stack_end_ = 0;  // what lies on the stack from there on is none of the scenario's
+  std::vector<std::byte> variables_at_first_;
+};
+
+}  // namespace ltsim
