@@ -116,37 +116,39 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
   Decision as_new{.is_of_tasks = true, .enabled = enabled};
   if (path_.is_at_end()) {
     const bool can_be_preempted = goes_on && (candidates & task_bit(runner)) != 0;
-    if (bounds_.states && !is_new_state(can_be_preempted ? runner : the_barrier)) return leave_as_redundant();
-    TaskBits first = candidates;
-    if (is_reduced()) {
-      as_new.asleep = asleep_;
-      first &= ~asleep_;
-      if (first == 0) {
-        // Those who wait race with who took what they wait for: they might have come first.
-        for (TaskBits all = waiting; all != 0; all &= all - 1) {
-          const auto task = static_cast<std::size_t>(std::countr_zero(all));
-          Step waits{.stepper = task, .effect = pending_of(task)};
-          waits.was_free = false;
-          steps_.add(waits);
-        }
-        return leave_as_redundant();
-      }
-    } else {
-      if (bounds_.preemptions && can_be_preempted && preemptions_ >= *bounds_.preemptions)
-        first = task_bit(runner);
-      as_new.to_try = first;
+    TaskBits done = asleep_ & candidates;
+    if (bounds_.states) done |= visit_state(can_be_preempted ? runner : the_barrier, candidates);
+    TaskBits first = candidates & ~done;
+    if (first == 0) {
+      if (is_reduced()) add_waits(waiting);
+      return leave_as_redundant();
     }
+    if (puts_to_sleep()) {
+      as_new.asleep = bounds_.states ? done : asleep_;
+    } else if (can_be_preempted && preemptions_ >= *bounds_.preemptions) {
+      first = task_bit(runner);
+    }
+    if (!is_reduced()) as_new.to_try = first;
     as_new.chosen =
         static_cast<std::uint32_t>((first & task_bit(runner)) != 0 ? runner : std::countr_zero(first));
     as_new.to_try |= task_bit(as_new.chosen);
   }
   const Decision& decision = next_decision(as_new);
-  asleep_ = is_reduced() ? (decision.asleep | decision.tried) & ~task_bit(decision.chosen) : 0;
+  asleep_ = puts_to_sleep() ? (decision.asleep | decision.tried) & ~task_bit(decision.chosen) : 0;
   if (goes_on && (polling_ & task_bit(runner)) == 0 && decision.chosen != runner) ++preemptions_;
   return index_of(decision.chosen);
 }
 
-bool ExhaustiveStrategy::is_new_state(std::size_t runner) noexcept {
+void ExhaustiveStrategy::add_waits(TaskBits waiting) noexcept {
+  for (TaskBits all = waiting; all != 0; all &= all - 1) {
+    const auto task = static_cast<std::size_t>(std::countr_zero(all));
+    Step waits{.stepper = task, .effect = pending_of(task)};
+    waits.was_free = false;
+    steps_.add(waits);
+  }
+}
+
+TaskBits ExhaustiveStrategy::visit_state(std::size_t runner, TaskBits candidates) noexcept {
   StateHash hash{world_.execution_number()};
   hash.add(world_.whole_state().hash());
   // How much of the bounds is left, and what it depends on.
@@ -159,7 +161,7 @@ bool ExhaustiveStrategy::is_new_state(std::size_t runner) noexcept {
     hash.add(silent_);
     hash.add(silence_steps_ << 1U | (clock_was_used_ ? 1U : 0U));
   }
-  return states_.add(hash.value());
+  return states_.visit(hash.value(), asleep_) & candidates;
 }
 
 SlowMoment ExhaustiveStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "sim_clock/explore/decision_path.hpp"
-#include "sim_clock/explore/hash_set.hpp"
+#include "sim_clock/explore/seen_states.hpp"
 #include "sim_clock/explore/step_races.hpp"
 #include "sim_clock/explore/strategy.hpp"
 
@@ -50,7 +50,6 @@ struct ProofBounds {
 class ExhaustiveStrategy final : public Strategy {
  public:
   static constexpr std::size_t tasks_max = search_tasks_max;
-  static constexpr std::size_t states_max = std::size_t{1} << 28U;
   /// Of one execution; all that comes after them is by default.
   static constexpr std::size_t steps_max = 4096;
 
@@ -73,7 +72,7 @@ class ExhaustiveStrategy final : public Strategy {
     return trouble_.empty() ? path_.trouble() : trouble_;
   }
   /// How many states were told apart (ProofBounds::states).
-  [[nodiscard]] std::uint64_t states() noexcept { return states_.size(); }
+  [[nodiscard]] std::uint64_t states() const noexcept { return states_.size(); }
 
   /// The search where it stands, one line a choice.
   [[nodiscard]] std::string checkpoint() const { return path_.checkpoint(); }
@@ -98,8 +97,10 @@ class ExhaustiveStrategy final : public Strategy {
  private:
   static constexpr std::size_t steppers_count = tasks_max + 1;  // the_barrier is one
 
-  /// Neither the bound on preemptions nor states that are told apart is anything that the orders of one trace share.
-  [[nodiscard]] bool is_reduced() const noexcept { return !bounds_.preemptions && !bounds_.states; }
+  /// A bound on preemptions is nothing that the orders of one trace share.
+  [[nodiscard]] bool puts_to_sleep() const noexcept { return !bounds_.preemptions; }
+  /// Where states are told apart, all that can be done in each is tried.
+  [[nodiscard]] bool is_reduced() const noexcept { return puts_to_sleep() && !bounds_.states; }
   /// Whether there have been steps_max, which counts as cut off.
   [[nodiscard]] bool is_too_long() noexcept {
     is_cut_off_ = is_cut_off_ || steps_.size() >= steps_max;
@@ -111,8 +112,12 @@ class ExhaustiveStrategy final : public Strategy {
   /// Ends the execution: it is redundant, or the search cannot go on.
   void leave() noexcept;
   std::size_t leave_as_redundant() noexcept;
+  /// Those who wait race with who took what they wait for: they might have come first.
+  void add_waits(TaskBits waiting) noexcept;
+  /// Comes to a state in which those of `candidates` that are not asleep are to be tried.
   /// @param runner  who could be preempted; or the_barrier
-  [[nodiscard]] bool is_new_state(std::size_t runner) noexcept;
+  /// @return        those of them that were tried in it before
+  [[nodiscard]] TaskBits visit_state(std::size_t runner, TaskBits candidates) noexcept;
   void begin_step(std::size_t stepper, const Operation& operation, bool is_resumed) noexcept;
   void add_barrier(bool is_time) noexcept;
   /// What happened since the last step besides it: who was woken, by whom or by time that passed by itself.
@@ -134,7 +139,7 @@ class ExhaustiveStrategy final : public Strategy {
   std::string trouble_;
   DecisionPath path_;
   StepRaces steps_;
-  HashSet states_{states_max};
+  SeenStates states_;
   TaskBits asleep_ = 0;
   TaskBits polling_ = 0;
   unsigned preemptions_ = 0;

@@ -19,13 +19,6 @@ class HashSet {
     __builtin_prefetch(&slots_[pending_ & (slots_.size() - 1)], 1);
   }
 
-  /// insert(), at once. @return whether it is a new one; true, too, when entries_max are there
-  bool add(std::uint64_t hash) {
-    const std::size_t before = size();
-    insert(hash);
-    return size() != before || before == entries_max_;
-  }
-
   [[nodiscard]] std::size_t size() {
     place_pending();
     return count_;

@@ -224,21 +224,57 @@ class ExhaustiveStrategyTest : public WorldTest {
       const Plan plan = random_plan(generator);
       const Found all = search(plan, {.preemptions = any_number, .looks = any_number});
       if (!all.is_over) continue;  // too many orders to try each
-      const Found reduced = search(plan, {.preemptions = {}, .looks = any_number});
       ++compared;
-      EXPECT_EQ(reduced.trouble, "") << to_string(plan);
-      EXPECT_TRUE(reduced.is_over) << to_string(plan);
-      EXPECT_EQ(fmt::format("{}", fmt::join(reduced.results, "\n")),
-                fmt::format("{}", fmt::join(all.results, "\n")))
-          << to_string(plan);
+      expect_same(plan, all, search(plan, {.preemptions = {}, .looks = any_number}));
     }
     EXPECT_GT(compared, plans_count / 2);
     world().set_default_memory(Memory::sc);
+  }
+
+  static void expect_same(const Plan& plan, const Found& all, const Found& fewer) {
+    EXPECT_EQ(fewer.trouble, "") << to_string(plan);
+    EXPECT_TRUE(fewer.is_over) << to_string(plan);
+    EXPECT_EQ(fmt::format("{}", fmt::join(fewer.results, "\n")),
+              fmt::format("{}", fmt::join(all.results, "\n")))
+        << to_string(plan);
+  }
+
+  /// Every schedule, against one way into each state.
+  static void compare_with_states(std::optional<unsigned> silences, std::uint64_t seed) {
+    constexpr unsigned plans_count = 150;
+    constexpr unsigned any_number = 1000;
+    RandomGenerator generator{seed};
+    unsigned compared = 0;
+    std::uint64_t executions = 0;
+    std::uint64_t executions_by_states = 0;
+    for (unsigned i = 0; i < plans_count; ++i) {
+      const Plan plan = random_plan(generator);
+      const Found all = search(plan, {.preemptions = any_number, .silences = silences, .looks = any_number});
+      if (!all.is_over) continue;  // too many orders to try each
+      const Found by_states = search(plan, {.preemptions = {}, .silences = silences, .states = true});
+      ++compared;
+      executions += all.executions;
+      executions_by_states += by_states.executions;
+      expect_same(plan, all, by_states);
+      // A bound on preemptions does not go together with sleep sets, but with states it does.
+      expect_same(plan, search(plan, {.preemptions = 1, .silences = silences, .looks = any_number}),
+                  search(plan, {.preemptions = 1, .silences = silences, .states = true}));
+    }
+    EXPECT_GT(compared, plans_count / 3);
+    EXPECT_LT(3 * executions_by_states, executions);
   }
 };
 
 TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_with_and_without_reduction) {
   compare(Memory::sc, 1);
+}
+
+TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_apart) {
+  compare_with_states(0, 3);
+}
+
+TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_apart_and_time_passes) {
+  compare_with_states(std::nullopt, 4);
 }
 
 TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_on_weak_memory) { compare(Memory::c11, 2); }
