@@ -77,6 +77,12 @@ void add_common_choices(CLI::App& app, PaperOptions& options) {
                                        {"one", Options::SemaphoreStart::one},
                                        {"left-over", Options::SemaphoreStart::left_over}},
                                       "K10: count of the semaphore at the start (default zero)");
+  add_choice<Options::AnswerOrder>(
+      app, "--answer-order", options.answer_order,
+      {{"as-published", Options::AnswerOrder::as_published},
+       {"release-and-acquire", Options::AnswerOrder::release_and_acquire}},
+      "K12: whether the state word orders the bytes of an answer, which nothing does as\n"
+      "published (default as-published)");
 }
 
 }  // namespace

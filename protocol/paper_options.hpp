@@ -3,7 +3,8 @@
 // Source: N. V. Kozak, R. A. Abdullaev, "Debugging module for the mechanisms of the logic task in the CNC
 // kernel" (MSTU "Stankin"). K1 to K11 number the open questions as protocol/README.md does; the first value
 // of each enumeration is the default. K11 (how many kernel threads, kernels and emulators share the objects)
-// is not an option: it is a matter of how many wrappers are made.
+// is not an option: it is a matter of how many wrappers are made. K12 goes
+// beyond the text, which says nothing of memory orders: its second value cures what follows (hazard H17).
 #pragma once
 
 #include <chrono>
@@ -33,6 +34,8 @@ struct PaperOptions {
   enum class LengthCheck : std::uint8_t { none, check_and_load_again, load_once };
   /// K10: count of the semaphore when an instance opens it.
   enum class SemaphoreStart : std::uint8_t { zero, one, left_over };
+  /// K12: what makes the master who sees "response" see the bytes of it: nothing, or the state word.
+  enum class AnswerOrder : std::uint8_t { as_published, release_and_acquire };
 
   ReadWait read_wait = ReadWait::poll;
   StateCoding state_coding = StateCoding::enumeration;
@@ -44,6 +47,7 @@ struct PaperOptions {
   OnTimeOut on_time_out = OnTimeOut::give_up;
   LengthCheck length_check = LengthCheck::none;
   SemaphoreStart semaphore_start = SemaphoreStart::zero;
+  AnswerOrder answer_order = AnswerOrder::as_published;
 
   /// K8: time from the beginning of the read to the time-out. A serial read of the published kind waits tens
   /// of ms.

@@ -187,7 +187,10 @@ void SharedMemoryWrapper::publish_request() noexcept {
 }
 
 bool SharedMemoryWrapper::response_is_published() const noexcept {
-  const std::uint32_t state = load_word(SegmentLayout::state_offset);
+  // Acquire: whoever sees the answer of s7 copies the bytes that were written before it, r2 r3.
+  const std::uint32_t state = answer_is_ordered()
+                                  ? load_word<std::memory_order_acquire>(SegmentLayout::state_offset)
+                                  : load_word(SegmentLayout::state_offset);
   if (options_.state_coding == PaperOptions::StateCoding::halves) return (state & response_half) != 0;
   return state == static_cast<std::uint32_t>(ExchangeState::response);
 }
@@ -195,17 +198,27 @@ bool SharedMemoryWrapper::response_is_published() const noexcept {
 void SharedMemoryWrapper::take_back_response() noexcept { set_state(ExchangeState::idle, response_half, 0); }
 
 void SharedMemoryWrapper::publish_response() noexcept {
-  set_state(ExchangeState::response, request_half, response_pending);
+  if (answer_is_ordered()) {
+    // Release: s5 s6 come before it, for the acquire of r1.
+    set_state<std::memory_order_release>(ExchangeState::response, request_half, response_pending);
+  } else {
+    set_state(ExchangeState::response, request_half, response_pending);
+  }
 }
 
+bool SharedMemoryWrapper::answer_is_ordered() const noexcept {
+  return options_.answer_order == PaperOptions::AnswerOrder::release_and_acquire;
+}
+
+template <std::memory_order order>
 void SharedMemoryWrapper::set_state(ExchangeState state, std::uint32_t cleared_bits,
                                     std::uint32_t set_bits) noexcept {
   if (options_.state_coding == PaperOptions::StateCoding::enumeration) {
-    store_word(SegmentLayout::state_offset, static_cast<std::uint32_t>(state));
+    store_word<order>(SegmentLayout::state_offset, static_cast<std::uint32_t>(state));
     return;
   }
   const std::uint32_t halves = load_word(SegmentLayout::state_offset);
-  store_word(SegmentLayout::state_offset, (halves & ~cleared_bits) | set_bits);
+  store_word<order>(SegmentLayout::state_offset, (halves & ~cleared_bits) | set_bits);
 }
 
 bool SharedMemoryWrapper::release_semaphore() noexcept {
@@ -250,14 +263,17 @@ void SharedMemoryWrapper::zero_segment() noexcept {
   }
 }
 
-// Relaxed, all four: the published design orders nothing but by its semaphore (hazard H17).
+// Relaxed, all four, but for the state word with K12: the published design orders nothing but by its semaphore
+// (hazard H17).
 
+template <std::memory_order order>
 std::uint32_t SharedMemoryWrapper::load_word(std::size_t offset) const noexcept {
-  return std::atomic_ref(*reinterpret_cast<std::uint32_t*>(at(offset))).load(std::memory_order_relaxed);
+  return std::atomic_ref(*reinterpret_cast<std::uint32_t*>(at(offset))).load(order);
 }
 
+template <std::memory_order order>
 void SharedMemoryWrapper::store_word(std::size_t offset, std::uint32_t value) noexcept {
-  std::atomic_ref(*reinterpret_cast<std::uint32_t*>(at(offset))).store(value, std::memory_order_relaxed);
+  std::atomic_ref(*reinterpret_cast<std::uint32_t*>(at(offset))).store(value, order);
 }
 
 std::byte SharedMemoryWrapper::load_byte(std::size_t offset) const noexcept {

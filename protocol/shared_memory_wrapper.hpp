@@ -6,12 +6,13 @@
 // no check that the design does not have.
 //
 // Accesses are relaxed std::atomic_ref operations, the areas byte by byte: that makes them defined in C++
-// when both sides touch an area at once, and adds no ordering that the design does not have.
+// when both sides touch an area at once, and adds no ordering that the design does not have. Only K12 adds one.
 //
 // Boost.Interprocess throws. Opening, and each operation on the semaphore, is caught here and becomes a
 // value; everything above is noexcept.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -121,11 +122,16 @@ class SharedMemoryWrapper {
   tl::expected<void, SharedMemoryError> open_or_throw();
   void zero_segment() noexcept;
 
+  // The order is a template argument: one that the compiler does not know would become the strongest there is.
+  template <std::memory_order order = std::memory_order_relaxed>
   [[nodiscard]] std::uint32_t load_word(std::size_t offset) const noexcept;
+  template <std::memory_order order = std::memory_order_relaxed>
   void store_word(std::size_t offset, std::uint32_t value) noexcept;
   [[nodiscard]] std::byte load_byte(std::size_t offset) const noexcept;
   void store_byte(std::size_t offset, std::byte value) noexcept;
+  template <std::memory_order order = std::memory_order_relaxed>
   void set_state(ExchangeState state, std::uint32_t cleared_bits, std::uint32_t set_bits) noexcept;
+  [[nodiscard]] bool answer_is_ordered() const noexcept;
   [[nodiscard]] std::size_t checked_length(const AreaLayout& area) const noexcept;
   [[nodiscard]] std::uint8_t* at(std::size_t offset) const noexcept;
 

@@ -1,5 +1,5 @@
 // One exchange, step by step in one thread: what stands in the memory after each step, and what each open
-// question (K1 to K4, K6 to K9) changes. The hazards that need only the order of whole calls are here too.
+// question (K1 to K4, K6 to K9) and the order of the answer (K12) change. The hazards that need only the order of whole calls are here too.
 
 #include <array>
 #include <fstream>
@@ -343,6 +343,30 @@ TEST_P(CheckedLength, takes_a_message_that_fills_its_area) {  // K9
 INSTANTIATE_TEST_SUITE_P(K9, CheckedLength,
                          testing::Values(PaperOptions::LengthCheck::check_and_load_again,
                                          PaperOptions::LengthCheck::load_once));
+
+class OrderedAnswer : public testing::TestWithParam<PaperOptions::StateCoding> {};
+
+TEST_P(OrderedAnswer, leaves_every_step_as_it_is) {  // K12: the order of memory shows in one thread to nobody
+  PaperOptions as_published = small_options();
+  as_published.state_coding = GetParam();
+  PaperOptions ordered = as_published;
+  ordered.answer_order = PaperOptions::AnswerOrder::release_and_acquire;
+  Exchange exchange(ordered);
+  Exchange reference(as_published);
+  const auto expect_the_same_word = [&] {
+    EXPECT_EQ(exchange.memory->word(state), reference.memory->word(state));
+  };
+  for (Exchange* each : {&exchange, &reference}) ASSERT_TRUE(each->master.write(bytes("ask")));
+  expect_the_same_word();
+  for (Exchange* each : {&exchange, &reference}) EXPECT_EQ(each->serve("answer"), "ask");
+  expect_the_same_word();
+  for (Exchange* each : {&exchange, &reference}) EXPECT_EQ(each->read(), "answer");
+  expect_the_same_word();
+}
+
+INSTANTIATE_TEST_SUITE_P(K12, OrderedAnswer,
+                         testing::Values(PaperOptions::StateCoding::enumeration,
+                                         PaperOptions::StateCoding::halves));
 
 TEST(Stopping, a_slave_does_not_execute_what_is_pending) {  // H19 does not follow
   Exchange exchange(small_options());

@@ -3,7 +3,8 @@
 // Three show it as it is, with all invariants watched at once; then, one row a hazard: what the hazard needs,
 // and nothing else, and the one invariant that it is known by. The search knows neither. Names begin with the
 // hazard's number in protocol/README.md. Each hazard is a shape: "-corrected" makes the same requests inside the
-// envelope in which the design is sound.
+// envelope in which the design is sound. A memory that is not sequentially consistent cannot be taken back into
+// that: the requests are made there with the order that the design lacks.
 
 #include <array>
 #include <chrono>
@@ -36,7 +37,16 @@ struct Hazard {
   std::string_view description;
   unsigned depth;  // protocol.md 3.4
   PaperExchange exchange;
+  ltsim::Memory memory = ltsim::Memory::sc;
 };
+
+constexpr bool needs_weak_memory(const Hazard& hazard) { return hazard.memory == ltsim::Memory::c11; }
+
+PaperExchange corrected(const Hazard& hazard) {
+  PaperExchange sound = inside_envelope(hazard.exchange);
+  if (needs_weak_memory(hazard)) sound.options.answer_order = PaperOptions::AnswerOrder::release_and_acquire;
+  return sound;
+}
 
 constexpr std::array hazards{
     Hazard{"paper/h01-answer-to-nothing",
@@ -130,6 +140,11 @@ constexpr std::array hazards{
            "K11: two emulators serve one segment",
            2,
            {.requests = 2, .emulators = 2, .monitor = writes("I28")}},
+    Hazard{"paper/h17-answer-before-its-bytes",
+           "the state says response before the bytes are there (memory c11)",
+           1,
+           {.monitor = reads("I4")},
+           ltsim::Memory::c11},
     Hazard{"paper/h18-lost-flag",
            "K2: the state is two halves, each changed by load, modification and store",
            2,
@@ -157,10 +172,13 @@ void register_one() {
       {.finding = hazard.exchange.monitor.only,
        .depth = hazard.depth,
        .tasks_count = 1 + hazard.exchange.kernel_threads + (hazard.exchange.emulators - 1),
-       .cure = "the same requests inside the envelope of the published handoff"},
+       .memory = hazard.memory,
+       .cure = needs_weak_memory(hazard)
+                   ? "K12: the answer is announced with release and looked for with acquire"
+                   : "the same requests inside the envelope of the published handoff"},
       hazard.description,
       [](ltsim::World& world) { run_exchange(world, hazards[index].exchange); },
-      [](ltsim::World& world) { run_exchange(world, inside_envelope(hazards[index].exchange)); }};
+      [](ltsim::World& world) { run_exchange(world, corrected(hazards[index])); }};
 }
 
 template <std::size_t... indexes>
