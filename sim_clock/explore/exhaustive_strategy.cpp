@@ -128,10 +128,13 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
     } else if (can_be_preempted && preemptions_ >= *bounds_.preemptions) {
       first = task_bit(runner);
     }
-    if (!is_reduced()) as_new.to_try = first;
     as_new.chosen =
         static_cast<std::uint32_t>((first & task_bit(runner)) != 0 ? runner : std::countr_zero(first));
-    as_new.to_try |= task_bit(as_new.chosen);
+    as_new.must_try(as_new.chosen);
+    if (!is_reduced()) {
+      for (TaskBits others = first & ~as_new.to_try; others != 0; others &= others - 1)
+        as_new.must_try(static_cast<std::size_t>(std::countr_zero(others)));
+    }
   }
   const Decision& decision = next_decision(as_new);
   asleep_ = puts_to_sleep() ? (decision.asleep | decision.tried) & ~task_bit(decision.chosen) : 0;

@@ -21,6 +21,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,8 +66,6 @@ class ExhaustiveStrategy final : public Strategy {
   [[nodiscard]] bool was_cut_off() const noexcept { return is_cut_off_; }
   /// In the last execution a task that polled could have gone on, and was made to wait.
   [[nodiscard]] bool was_held_back() const noexcept { return is_held_back_; }
-  /// How much of the search is over, by what is known of it now: 0 to 1. More may turn up.
-  [[nodiscard]] double done() const noexcept { return path_.done(); }
   /// What makes the search impossible, if something does.
   [[nodiscard]] const std::string& trouble() const noexcept {
     return trouble_.empty() ? path_.trouble() : trouble_;
@@ -74,11 +73,12 @@ class ExhaustiveStrategy final : public Strategy {
   /// How many states were told apart (ProofBounds::states).
   [[nodiscard]] std::uint64_t states() const noexcept { return states_.size(); }
 
-  /// The search where it stands, one line a choice.
-  [[nodiscard]] std::string checkpoint() const { return path_.checkpoint(); }
-  /// States that were told apart before are forgotten: some may be come to again.
-  /// @return whether that was a checkpoint
-  [[nodiscard]] bool resume(std::string_view checkpoint) { return path_.resume(checkpoint); }
+  /// From here on the search is of this part. States that were told apart before stay so.
+  void begin_item(const SearchItem& item) { path_.begin_item(item); }
+  /// Where the search of the part stands: its decisions that are not settled.
+  [[nodiscard]] std::span<const Decision> rest() const noexcept { return path_.rest(); }
+  /// What must be tried at those that are.
+  [[nodiscard]] const std::vector<TreeRequest>& requests() const noexcept { return path_.requests(); }
 
   [[nodiscard]] std::string_view name() const noexcept override { return "exhaustive"; }
   void begin_execution(std::uint64_t seed) noexcept override;

@@ -12,7 +12,7 @@
 namespace ltsim {
 namespace {
 
-constexpr std::string_view proof_header = "ltsim proof 1";
+constexpr std::string_view proof_header = "ltsim proof 2";
 
 /// Of this program's file: FNV-1a, 64 bits.
 std::uint64_t program_hash() {
@@ -34,37 +34,31 @@ std::string head(std::string_view scenario, const ProveOptions& options) {
 }  // namespace
 
 std::string to_proof(const ProveReport& report, std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}counted   {} executions, {} redundant, {} cut off, {} held back, {} points, {} s\n{}",
-                     head(scenario, options), report.executions, report.redundant, report.cut_off,
-                     report.held_back, report.points, report.seconds, report.checkpoint);
+  return fmt::format("{}seconds   {}\n{}", head(scenario, options), report.seconds, report.checkpoint);
 }
 
 tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::string_view scenario,
                                                    const ProveOptions& options) {
-  if (!text.starts_with(proof_header))
+  if (!text.starts_with(proof_header)) {
+    if (text.starts_with("ltsim proof "))
+      return tl::unexpected(
+          fmt::format("is of another version of this program: it does not begin with \"{}\"", proof_header));
     return tl::unexpected(
         fmt::format("is no interrupted proof: it does not begin with \"{}\"", proof_header));
+  }
   const std::string expected = head(scenario, options);
   if (!text.starts_with(expected))
     return tl::unexpected<std::string>(
         "is of another scenario, of other bounds or of another build of this program");
   const std::string rest{text.substr(expected.size())};
   ProveReport report;
-  unsigned long long executions = 0;
-  unsigned long long redundant = 0;
-  unsigned long long cut_off = 0;
-  unsigned long long held_back = 0;
-  unsigned long long points = 0;
-  if (std::sscanf(rest.c_str(),
-                  "counted %llu executions, %llu redundant, %llu cut off, %llu held back, %llu points, %lf s",
-                  &executions, &redundant, &cut_off, &held_back, &points, &report.seconds) != 6)
-    return tl::unexpected<std::string>("the line that says what was counted is missing");
-  report.executions = executions;
-  report.redundant = redundant;
-  report.cut_off = cut_off;
-  report.held_back = held_back;
-  report.points = points;
+  if (std::sscanf(rest.c_str(), "seconds %lf", &report.seconds) != 1)
+    return tl::unexpected<std::string>("the line that says how long it has taken is missing");
   report.checkpoint = rest.substr(std::min(rest.find('\n') + 1, rest.size()));
+  const auto tree = SearchTree::parse(report.checkpoint);
+  if (!tree) return tl::unexpected<std::string>("holds a line that is none of a search");
+  report.counts = tree->counts();
+  report.done = tree->done();
   return report;
 }
 

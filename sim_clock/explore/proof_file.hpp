@@ -1,11 +1,18 @@
 // An interrupted proof as a file: where the search stands, and what it is a search of.
 //
-//   ltsim proof 1
+//   ltsim proof 2
 //   scenario  paper/three-requests
 //   program   8a31b6c0d22f4b17
-//   bounds    at most 2 preemptions and 1 silence, memory sc, 4 looks
-//   counted   12033 executions, 107 redundant, 0 cut off, 0 held back, 924511 points, 1.25 s
-//   task 1 of 0x3 to-try 0x3 tried 0x1 asleep 0x0
+//   bounds    at most 2 preemptions and at most 1 silence, memory sc, 4 looks
+//   seconds   1.25
+//   part 12033 executions, 107 redundant, 0 cut off, 0 held back, 924511 points
+//   branch 1 0                        so many parts of it follow, before them so many were over
+//   task 0 of 0x3 to-try 0,1 tried 0x0 asleep 0x0
+//   task 0 of 0x3 to-try 0,1 tried 0x0 asleep 0x0      with which the part begins
+//   part 310 executions, 0 redundant, 0 cut off, 0 held back, 30220 points
+//   asks 0 0x6                        at that decision one of these tasks must be tried, too
+//   leaf 2                            so many decisions follow, at which the search of it stands
+//   task 1 of 0x3 to-try 0,1 tried 0x1 asleep 0x0
 //   time 0 of 2
 //   ...
 //

@@ -1,5 +1,7 @@
 #include "sim_clock/explore/prover.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "sim_clock/check/signal_guard.hpp"
@@ -12,82 +14,73 @@ std::string counted(std::uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+constexpr std::uint64_t executions_per_look_at_the_time = 8;
+
 }  // namespace
 
-ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options, const ProveReport& earlier,
-                          const std::function<bool(const ProveReport&)>& on_progress) {
-  const SignalGuard signals;
-  const auto begin = std::chrono::steady_clock::now();
-  auto next_look = begin;
-  Explorer explorer{world_};
-  ExhaustiveStrategy strategy{world_, options.bounds};
-  ProveReport report = earlier;
-  if (!earlier.checkpoint.empty() && !strategy.resume(earlier.checkpoint)) {
-    report.error = "the checkpoint holds a line that is none of a search";
-    return report;
-  }
-  report.complete = false;
-  report.failure.reset();
-  world_.coverage().forget();
-  world_.set_default_memory(options.memory);
-  world_.set_default_cpu(Cpu::many);
-  const auto fill = [&] {
-    report.done = strategy.done();
-    report.states = strategy.states();
-    report.seconds =
-        earlier.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
-  try {
-    // What is initialised on first use must be so in all executions alike.
-    ExhaustiveStrategy first{world_, {}};
-    static_cast<void>(explorer.execute(scenario, first, 0, nullptr));
-    if (options.bounds.states && world_.memory() == Memory::c11)
-      throw Explorer::NotSimulable{
-          "states are told apart with memory sc only: what of the past a weak memory "
-          "still shows is no part of them"};
-    if (world_.scheduler().cpu() != Cpu::many)
-      throw Explorer::NotSimulable{"the scenario has one processor: which orders matter there, is not known"};
-    for (bool goes_on = true; goes_on;) {
-      static_cast<void>(explorer.execute(scenario, strategy, 0, nullptr));
-      if (!strategy.trouble().empty()) throw Explorer::NotSimulable{strategy.trouble()};
-      report.points += world_.scheduler().points();
-      if (strategy.was_redundant()) {
-        ++report.redundant;
-      } else {
-        ++report.executions;
-        if (strategy.was_cut_off()) ++report.cut_off;
-        if (strategy.was_held_back()) ++report.held_back;
-      }
-      if (!world_.scheduler().outcome().passed()) {
-        Failure failure = explorer.record(scenario, strategy, 0);
-        failure.execution = report.executions + report.redundant;
-        failure.count = 1;
-        std::vector<Failure> failures;
-        ExploreOptions small;
-        small.memory = options.memory;
-        small.minimize_seconds = options.minimize_seconds;
-        static_cast<void>(explorer.add_failure(scenario, small, failures, std::move(failure)));
-        report.failure = std::move(failures.front());
-        break;
-      }
-      report.complete = !strategy.advance();
-      if (!strategy.trouble().empty()) throw Explorer::NotSimulable{strategy.trouble()};
-      if (report.complete) break;
-      if ((report.executions + report.redundant) % 64 != 0) continue;
-      const auto now = std::chrono::steady_clock::now();
-      if (options.seconds_max && now - begin >= *options.seconds_max) break;
-      if (now < next_look) continue;
-      next_look = now + std::chrono::milliseconds{100};
-      fill();
-      goes_on = on_progress(report);
+ProofUnderWay::ProofUnderWay(const ProveOptions& options, const ProveReport& earlier)
+    : options_(options), earlier_seconds_(earlier.seconds) {
+  if (earlier.checkpoint.empty()) return;
+  auto read = SearchTree::parse(earlier.checkpoint);
+  if (!read) throw Explorer::NotSimulable{"the checkpoint holds a line that is none of a search"};
+  tree_ = std::move(*read);
+}
+
+bool ProofUnderWay::is_to_stop(const ProveProgress& on_progress, std::uint64_t states) {
+  const auto now = Clock::now();
+  if (options_.seconds_max && now - began_at_ >= *options_.seconds_max) return true;
+  if (now < next_look_) return false;
+  next_look_ = now + std::chrono::milliseconds{100};
+  ProveReport so_far = report();
+  so_far.states = states;
+  return !on_progress(so_far);
+}
+
+ProveReport ProofUnderWay::report() const {
+  ProveReport report;
+  report.counts = tree_.counts();
+  report.complete = tree_.is_complete();
+  report.done = tree_.done();
+  report.seconds = earlier_seconds_ + std::chrono::duration<double>(Clock::now() - began_at_).count();
+  return report;
+}
+
+ProveReport ProofUnderWay::final_report(SearchRunner& runner) const {
+  ProveReport final = report();
+  final.states = runner.states();
+  if (const SearchTree::Part* const ended = tree_.ended(); ended != nullptr && tree_.is_over()) {
+    if (SearchTree::end_of(*ended).end == SliceEnd::in_error) {
+      final.error = SearchTree::end_of(*ended).error;
+    } else {
+      final.failure = runner.tell_failure(SearchTree::item_of(*ended));
+      final.failure->execution = final.counts.executions + final.counts.redundant;
     }
-  } catch (const Explorer::NotSimulable& trouble) {
-    report.complete = false;
-    report.error = trouble.message;
   }
-  fill();
-  if (report.complete) report.done = 1;
-  report.checkpoint = report.complete ? "" : strategy.checkpoint();
+  if (!final.complete) final.checkpoint = tree_.checkpoint();
+  return final;
+}
+
+ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options, const ProveReport& earlier,
+                          const ProveProgress& on_progress) try {
+  const SignalGuard signals;
+  ProofUnderWay proof{options, earlier};
+  SearchRunner runner{world_, scenario, options};
+  runner.warm_up();
+  bool is_stopped = false;
+  while (SearchTree::Part* const part = is_stopped ? nullptr : proof.tree().take()) {
+    std::uint64_t executions = 0;
+    SearchedSlice searched = runner.search(SearchTree::item_of(*part), [&](const SearchCounts& counts) {
+      if (++executions % executions_per_look_at_the_time != 0) return true;
+      SearchTree::note_progress(*part, counts, runner.done());
+      is_stopped = proof.is_to_stop(on_progress, runner.states());
+      return !is_stopped;
+    });
+    proof.tree().give_back(*part, std::move(searched), false);
+  }
+  return proof.final_report(runner);
+} catch (const Explorer::NotSimulable& trouble) {
+  ProveReport report = earlier;
+  report.error = trouble.message;
   return report;
 }
 
@@ -107,12 +100,13 @@ std::string describe_coverage(const ProveReport& report, const ProveOptions& opt
   const std::string states =
       options.bounds.states ? fmt::format("{} in ", counted(report.states, "state")) : std::string{};
   const std::string held_back =
-      report.held_back == 0 ? std::string{}
-                            : fmt::format("; in {} of them a task that polled waited for a change after {}",
-                                          report.held_back, counted(options.bounds.looks, "look"));
+      report.counts.held_back == 0
+          ? std::string{}
+          : fmt::format("; in {} of them a task that polled waited for a change after {}",
+                        report.counts.held_back, counted(options.bounds.looks, "look"));
   return fmt::format("{}{}{} with {}; {} cut off{}", report.complete ? "all " : "", states,
-                     counted(report.executions, "execution"), describe_bounds(options), report.cut_off,
-                     held_back);
+                     counted(report.counts.executions, "execution"), describe_bounds(options),
+                     report.counts.cut_off, held_back);
 }
 
 }  // namespace ltsim

@@ -23,7 +23,8 @@ bool StepRaces::depend(const Step& one, const Step& other) const noexcept {
 
 void StepRaces::find(DecisionPath& path) {
   // What came before the last decision was looked at when it was new.
-  const std::uint32_t in_common = path.steps_in_common();
+  // An execution that should have been longer is no longer the one it was: DecisionPath::advance() says so.
+  const std::uint32_t in_common = std::min(path.steps_in_common(), size());
   clocks_.resize(steps_.size() * steppers_count);
   std::fill(clocks_.begin() + static_cast<std::ptrdiff_t>(in_common * steppers_count), clocks_.end(), 0);
   std::vector<std::uint32_t> last(steppers_count, Step::none);
@@ -86,12 +87,7 @@ bool StepRaces::reverse(DecisionPath& path, std::uint32_t earlier, std::uint32_t
   if ((begins & task_bit(the_barrier)) != 0) return true;
   // There, or where one of them could last be chosen: what has happened in between does not matter to it.
   for (std::uint32_t d = steps_[earlier].decisions; d-- > 0;) {
-    Decision& decision = path[d];
-    if (!decision.is_of_tasks) continue;
-    if ((begins & (decision.to_try | decision.asleep)) != 0) return true;
-    const TaskBits possible = begins & decision.enabled;
-    decision.to_try |= possible & (0 - possible);
-    if (possible != 0) return true;
+    if (path.must_try_one_of(d, begins)) return true;
   }
   return false;
 }

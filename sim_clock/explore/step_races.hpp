@@ -16,7 +16,6 @@ namespace ltsim {
 class World;
 
 /// What takes a step, besides tasks: faults, and time that passes when nobody can run.
-inline constexpr std::size_t search_tasks_max = 60;
 inline constexpr std::size_t the_barrier = search_tasks_max;
 
 struct Step {

@@ -48,7 +48,7 @@ class ProgressOfProof {
     const double left = report.done > 0 ? report.seconds * (1 - report.done) / report.done : 0;
     fmt::print(stderr,
                "\r\033[K{}  {} executions, {:.0f} s, {:.1f} % of what is known of, {:.0f} s left for that",
-               scenario_, report.executions, report.seconds, 100 * report.done, left);
+               scenario_, report.counts.executions, report.seconds, 100 * report.done, left);
   }
 
  private:
@@ -78,7 +78,7 @@ ProveReport earlier_part(const ProveArguments& arguments, const std::string& pat
   if (!file || !found)
     throw UsageError{fmt::format("{}: {}; \"--anew\" begins from the beginning", path,
                                  found ? std::string{"cannot be read"} : found.error())};
-  fmt::print("  goes on from {}, after {} executions\n", path, found->executions);
+  fmt::print("  goes on from {}, after {} executions\n", path, found->counts.executions);
   return *found;
 }
 
@@ -127,8 +127,8 @@ int prove(const ProveArguments& arguments, std::string_view program) {
     return exit_our_fault;
   }
   fmt::print("{}  {}\n  {} scheduling points, {} executions left when they came to nothing new, {:.1f} s\n",
-             scenario.name, describe_coverage(report, arguments.options), report.points, report.redundant,
-             report.seconds);
+             scenario.name, describe_coverage(report, arguments.options), report.counts.points,
+             report.counts.redundant, report.seconds);
   if (report.failure) return tell_failure(arguments, program, report);
   if (report.complete) {
     std::error_code nothing_to_remove;

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "sim_clock/explore/proof_file.hpp"
+#include "tests/sim_clock/known_traces.hpp"
 #include "tests/sim_clock/world_fixture.hpp"
 
 namespace ltsim {
@@ -30,160 +31,10 @@ class ProverTest : public WorldTest {
                            std::uint64_t executions_max = ~std::uint64_t{0}) {
     const Scenario scenario{.name = "test/proved", .description = "", .body = body};
     return Prover{world()}.prove(scenario, options, earlier, [&](const ProveReport& so_far) {
-      return so_far.executions < executions_max;
+      return so_far.counts.executions < executions_max;
     });
   }
 };
-
-/// Adds `count` tasks, each with its number.
-void start_tasks(World& world, std::uint32_t count, const std::function<void(std::uint32_t)>& body) {
-  for (std::uint32_t i = 0; i < count; ++i)
-    world.process("program").start(fmt::format("task-{}", i), [body, i] { body(i); });
-}
-
-/// A program, and how many traces it has.
-struct Known {
-  std::string name;
-  std::uint64_t traces;
-  std::function<void(World&)> body;
-};
-
-void PrintTo(const Known& known, std::ostream* out) { *out << known.name; }
-
-std::uint64_t factorial(std::uint64_t n) { return n < 2 ? 1 : n * factorial(n - 1); }
-std::uint64_t choose(std::uint64_t n, std::uint64_t k) {
-  return factorial(n) / (factorial(k) * factorial(n - k));
-}
-
-Known writers(std::uint32_t n) {
-  return {fmt::format("writers_{}", n), factorial(n), [n](World& world) {
-            Word word{0};
-            start_tasks(world, n, [&](std::uint32_t i) { word.store(i); });
-            world.run();
-          }};
-}
-
-/// Each reader comes before the writer or after it.
-Known readers(std::uint32_t n) {
-  return {fmt::format("readers_{}", n), std::uint64_t{1} << n, [n](World& world) {
-            Word word{0};
-            world.process("program").start("writer", [&] { word.store(1); });
-            start_tasks(world, n, [&](std::uint32_t) { static_cast<void>(word.load()); });
-            world.run();
-          }};
-}
-
-/// Two tasks with n updates of one word each.
-Known two_counters(std::uint32_t n) {
-  return {fmt::format("two_counters_{}", n), choose(2 * n, n), [n](World& world) {
-            Word word{0};
-            start_tasks(world, 2, [&](std::uint32_t) {
-              for (std::uint32_t i = 0; i < n; ++i) word.fetch_add(1);
-            });
-            world.run();
-          }};
-}
-
-Known three_counters(std::uint32_t n) {
-  return {fmt::format("three_counters_{}", n),
-          factorial(3 * n) / (factorial(n) * factorial(n) * factorial(n)), [n](World& world) {
-            Word word{0};
-            start_tasks(world, 3, [&](std::uint32_t) {
-              for (std::uint32_t i = 0; i < n; ++i) word.fetch_add(1);
-            });
-            world.run();
-          }};
-}
-
-Known own_words(std::uint32_t n) {
-  return {fmt::format("own_words_{}", n), 1, [n](World& world) {
-            std::array<Word, 8> words{};
-            start_tasks(world, n, [&](std::uint32_t i) { words[i].store(words[i].load() + 1); });
-            world.run();
-          }};
-}
-
-/// "Last zero" of Abdulla and others: one task looks for the last word that is 0, from the end; the others each make their word
-/// one more than the one before it.
-Known last_zero(std::uint32_t n) {
-  return {fmt::format("last_zero_{}", n), (n + 1) * (std::uint64_t{1} << (n - 1)), [n](World& world) {
-            std::array<Word, 16> words{};
-            world.process("program").start("reader", [&] {
-              for (std::uint32_t i = n; i > 0 && words[i].load() == 0;) --i;
-            });
-            start_tasks(world, n, [&](std::uint32_t i) { words[i + 1].store(words[i].load() + 1); });
-            world.run();
-          }};
-}
-
-/// "Indexer" of Flanagan and Godefroid: each task puts four numbers into a hash table of 128 places; up to 11 tasks never meet, and
-/// each further one meets three others.
-Known indexer(std::uint32_t n) {
-  return {fmt::format("indexer_{}", n), std::uint64_t{1} << (3 * (n - 11)), [n](World& world) {
-            std::array<Word, 128> table{};
-            start_tasks(world, n, [&](std::uint32_t task) {
-              for (std::uint32_t i = 1; i <= 4; ++i) {
-                const std::uint32_t message = i * 11 + task;
-                std::uint32_t hash = message * 7 % 128;
-                std::uint32_t empty = 0;
-                while (!table[hash].compare_exchange_strong(empty, message)) {
-                  hash = (hash + 1) % 128;
-                  empty = 0;
-                }
-              }
-            });
-            world.run();
-          }};
-}
-
-/// The first exchange decides; those that fail only look.
-Known one_winner(std::uint32_t n) {
-  return {fmt::format("one_winner_{}", n), n, [n](World& world) {
-            Word word{0};
-            start_tasks(world, n, [&](std::uint32_t i) {
-              std::uint32_t nobody = 0;
-              word.compare_exchange_strong(nobody, i + 1);
-            });
-            world.run();
-          }};
-}
-
-Known one_mutex(std::uint32_t n) {
-  return {fmt::format("one_mutex_{}", n), factorial(n), [n](World& world) {
-            std::mutex mutex;
-            std::uint32_t count = 0;
-            start_tasks(world, n, [&](std::uint32_t) {
-              const std::lock_guard lock{mutex};
-              ++count;
-            });
-            world.run();
-            world.require(count == n, "a count is lost");
-          }};
-}
-
-/// Posts and waits of one semaphore, so that no wait comes before its post: the n-th Catalan number.
-Known tokens(std::uint32_t n) {
-  return {fmt::format("tokens_{}", n), choose(2 * n, n) / (n + 1), [n](World& world) {
-            world.leave_semaphore("tokens", 0);
-            start_tasks(world, 2, [&](std::uint32_t i) {
-              sem_t* const tokens = sem_open("tokens", 0);
-              for (std::uint32_t k = 0; k < n; ++k) i == 0 ? sem_post(tokens) : sem_wait(tokens);
-            });
-            world.run();
-          }};
-}
-
-/// Of the four orders of the two pairs one is a circle.
-Known store_buffering() {
-  return {"store_buffering", 3, [](World& world) {
-            std::array<Word, 2> words{};
-            start_tasks(world, 2, [&](std::uint32_t i) {
-              words[i].store(1);
-              static_cast<void>(words[1 - i].load());
-            });
-            world.run();
-          }};
-}
 
 class KnownTracesTest : public ProverTest, public testing::WithParamInterface<Known> {};
 
@@ -191,16 +42,11 @@ TEST_P(KnownTracesTest, are_all_run_and_hardly_anything_else) {
   const ProveReport report = prove(GetParam().body);
   EXPECT_TRUE(report.complete);
   EXPECT_EQ(report.error, std::nullopt);
-  EXPECT_EQ(report.executions, GetParam().traces);
-  EXPECT_LE(2 * (report.executions + report.redundant), 3 * GetParam().traces);
+  EXPECT_EQ(report.counts.executions, GetParam().traces);
+  EXPECT_LE(2 * (report.counts.executions + report.counts.redundant), 3 * GetParam().traces);
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, KnownTracesTest,
-                         testing::Values(writers(2), writers(6), readers(1), readers(8), two_counters(1),
-                                         two_counters(5), three_counters(2), own_words(6), last_zero(1),
-                                         last_zero(5), last_zero(9), indexer(11), indexer(13), indexer(15),
-                                         one_winner(5), one_mutex(2), one_mutex(6), tokens(1), tokens(5),
-                                         store_buffering()),
+INSTANTIATE_TEST_SUITE_P(Programs, KnownTracesTest, testing::ValuesIn(known_programs()),
                          [](const auto& known) { return known.param.name; });
 
 void two_counters_of_their_own(World& world, std::uint32_t steps) {
@@ -215,7 +61,7 @@ TEST_F(ProverTest, with_a_bound_on_preemptions_all_schedules_within_it_are_run) 
   const auto executions = [](unsigned preemptions) {
     ProveOptions options;
     options.bounds.preemptions = preemptions;
-    return prove([](World& world) { two_counters_of_their_own(world, 3); }, options).executions;
+    return prove([](World& world) { two_counters_of_their_own(world, 3); }, options).counts.executions;
   };
   EXPECT_EQ(executions(0), 2U);
   // One switch after the first or second of the three steps of whoever begins: each task then ends at once, or after the other.
@@ -224,7 +70,7 @@ TEST_F(ProverTest, with_a_bound_on_preemptions_all_schedules_within_it_are_run) 
 }
 
 TEST_F(ProverTest, without_a_bound_orders_that_make_no_difference_are_one) {
-  EXPECT_EQ(prove([](World& world) { two_counters_of_their_own(world, 3); }).executions, 1U);
+  EXPECT_EQ(prove([](World& world) { two_counters_of_their_own(world, 3); }).counts.executions, 1U);
 }
 
 TEST_F(ProverTest, the_first_failure_ends_the_search_and_can_be_replayed) {
@@ -278,13 +124,13 @@ TEST_F(ProverTest, what_is_not_over_goes_on_from_its_checkpoint) {
   ASSERT_TRUE(read) << read.error();
   const ProveReport rest = prove(program.body, {}, *read);
   EXPECT_TRUE(rest.complete);
-  EXPECT_EQ(rest.executions, whole.executions);
-  EXPECT_EQ(rest.redundant, whole.redundant);
+  EXPECT_EQ(rest.counts.executions, whole.counts.executions);
+  EXPECT_EQ(rest.counts.redundant, whole.counts.redundant);
 }
 
 TEST_F(ProverTest, a_checkpoint_belongs_to_its_search) {
   ProveReport part;
-  part.checkpoint = "number 0 of 2\n";
+  part.checkpoint = SearchTree{}.checkpoint();
   const std::string file = to_proof(part, "test/proved", {});
   ProveOptions weak;
   weak.memory = Memory::c11;
@@ -326,26 +172,27 @@ TEST_F(ProverTest, an_execution_without_end_is_counted_as_cut_off) {
     of.run();
   });
   EXPECT_TRUE(report.complete);
-  EXPECT_EQ(report.cut_off, report.executions);
+  EXPECT_EQ(report.counts.cut_off, report.counts.executions);
 }
 
 TEST_F(ProverTest, says_what_was_covered_and_no_more) {
   ProveReport report;
-  report.executions = 18'432;
+  report.counts.executions = 18'432;
   report.complete = true;
   ProveOptions options;
   options.bounds = {.preemptions = 2, .silences = 1};
   options.memory = Memory::c11;
   EXPECT_EQ(describe_coverage(report, options),
-            "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off");
-  report.held_back = 7;
-  EXPECT_EQ(describe_coverage(report, options),
-            "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off; in 7 of "
-            "them a task that polled "
-            "waited for a change after 4 looks");
-  report.held_back = 0;
+            "all 18432 executions with at most 2 preemptions and at most 1 silence, memory c11; 0 cut off");
+  report.counts.held_back = 7;
+  EXPECT_EQ(
+      describe_coverage(report, options),
+      "all 18432 executions with at most 2 preemptions and at most 1 silence, memory c11; 0 cut off; in 7 of "
+      "them a task that polled "
+      "waited for a change after 4 looks");
+  report.counts.held_back = 0;
   report.complete = false;
-  report.executions = 1;
+  report.counts.executions = 1;
   options = {};
   EXPECT_EQ(describe_coverage(report, options),
             "1 execution with any number of preemptions and no silence, one of each order that makes a "
