@@ -50,10 +50,10 @@ enum class SliceEnd : std::uint8_t {
 /// What a process has done of a leaf since it has got it.
 struct SearchedSlice {
   SliceEnd end = SliceEnd::stopped;
-  SearchCounts counts;
-  std::vector<TreeRequest> requests;
-  std::vector<Decision> rest;
-  std::string error;
+  SearchCounts counts{};
+  std::vector<TreeRequest> requests{};
+  std::vector<Decision> rest{};
+  std::string error{};
 };
 
 /// Text for another process.

@@ -1,11 +1,7 @@
 #include "sim_clock/explore/worker.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <thread>
 
 #include "sim_clock/check/signal_guard.hpp"
@@ -34,19 +30,14 @@ void answer_position_signal(const World& world, WorkerProgress& progress) {
   sigaction(worker_position_signal, &action, nullptr);
 }
 
-void send(int pipe, const WorkerMessage& message) {
-  const std::vector<std::uint8_t> bytes = encode(message);
-  for (std::size_t sent = 0; sent < bytes.size();) {
-    const ssize_t count = write(pipe, bytes.data() + sent, bytes.size() - sent);
-    if (count < 0 && errno != EINTR) return;  // the parent is gone, and so are we in a moment
-    if (count > 0) sent += static_cast<std::size_t>(count);
-  }
+void send(int socket, const WorkerMessage& message) {
+  write_all(socket, encode(message));  // if not, the parent is gone, and so are we in a moment
 }
 
 class Worker {
  public:
-  Worker(const WorkerOrder& order, SharedProgress& progress)
-      : order_(order), bounds_(progress.bounds()), own_(progress.worker(order.number)) {
+  Worker(const WorkerOrder& order, SharedProgress& progress, int socket)
+      : order_(order), socket_(socket), bounds_(progress.bounds()), own_(progress.worker(order.number)) {
     answer_position_signal(world_, own_);
     world_.set_default_memory(order.options.memory);
     world_.set_default_cpu(order.options.cpu);
@@ -92,19 +83,19 @@ class Worker {
     const std::uint64_t execution = failure.execution;
     const std::size_t new_place = order_.failures_sent + failures_.size() + 1;
     // As it is, before it is made small: that runs executions that nobody knows, and they may kill the worker.
-    send(order_.pipe, WorkerFoundFailure{.place = new_place, .failure = failure});
+    send(socket_, WorkerFoundFailure{.place = new_place, .failure = failure});
     if (!order_.options.keep_going) bounds_.end_at(execution);
     // Another worker may have found an earlier one: this one does not count then.
     if (execution > bounds_.execution_last.load()) return new_place;
     const std::size_t place = order_.failures_sent + explorer_.add_failure(order_.scenario, order_.options,
                                                                            failures_, std::move(failure));
     // The message first: who sees the record finds the failure there.
-    if (place == new_place)
-      send(order_.pipe, WorkerFoundFailure{.place = place, .failure = failures_.back()});
+    if (place == new_place) send(socket_, WorkerFoundFailure{.place = place, .failure = failures_.back()});
     return place;
   }
 
   const WorkerOrder& order_;
+  int socket_;
   ExplorationBounds& bounds_;
   WorkerProgress& own_;
   World world_;
@@ -115,8 +106,8 @@ class Worker {
 };
 
 /// @return the message with which the work ends
-WorkerMessage work(const WorkerOrder& order, SharedProgress& progress) {
-  Worker worker{order, progress};
+WorkerMessage work(const WorkerOrder& order, SharedProgress& progress, int socket) {
+  Worker worker{order, progress, socket};
   try {
     worker.run();
     return WorkerFinished{};
@@ -130,10 +121,8 @@ WorkerMessage work(const WorkerOrder& order, SharedProgress& progress) {
 
 }  // namespace
 
-void run_worker(const WorkerOrder& order, SharedProgress& progress) noexcept {
-  send(order.pipe, work(order, progress));
-  std::fflush(nullptr);  // what a scenario printed
-  _exit(0);
+void run_worker(const WorkerOrder& order, SharedProgress& progress, int socket) noexcept {
+  send(socket, work(order, progress, socket));
 }
 
 }  // namespace ltsim

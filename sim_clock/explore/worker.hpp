@@ -19,7 +19,6 @@ struct WorkerOrder {
   unsigned number = 0;  ///< from 0
   unsigned workers_count = 1;
   std::size_t failures_sent = 0;  ///< by its predecessors of the same number
-  int pipe = -1;                  ///< to write to
 
   [[nodiscard]] std::uint64_t execution_of(std::uint64_t index) const noexcept {
     return 1 + number + index * workers_count;
@@ -29,7 +28,7 @@ struct WorkerOrder {
 /// The signal with which the parent asks for WorkerProgress::position.
 inline constexpr int worker_position_signal = SIGUSR1;
 
-/// Runs in a process just forked, in which no World exists, and ends it.
-[[noreturn]] void run_worker(const WorkerOrder& order, SharedProgress& progress) noexcept;
+/// Runs in a process just forked, in which no World exists. @param socket  for messages to the parent
+void run_worker(const WorkerOrder& order, SharedProgress& progress, int socket) noexcept;
 
 }  // namespace ltsim

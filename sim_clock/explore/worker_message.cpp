@@ -1,6 +1,5 @@
 #include "sim_clock/explore/worker_message.hpp"
 
-#include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -75,24 +74,13 @@ WorkerMessage message_of(const json& object) {
 }  // namespace
 
 std::vector<std::uint8_t> encode(const WorkerMessage& message) {
-  const std::vector<std::uint8_t> body =
-      json::to_cbor(std::visit([](const auto& each) { return to_json(each); }, message));
-  const auto length = static_cast<std::uint32_t>(body.size());
-  std::vector<std::uint8_t> bytes(sizeof length + body.size());
-  std::memcpy(bytes.data(), &length, sizeof length);
-  std::memcpy(bytes.data() + sizeof length, body.data(), body.size());
-  return bytes;
+  return as_frame(json::to_cbor(std::visit([](const auto& each) { return to_json(each); }, message)));
 }
 
 std::optional<WorkerMessage> WorkerMessageReader::next() {
-  std::uint32_t length = 0;
-  if (buffer_.size() < sizeof length) return std::nullopt;
-  std::memcpy(&length, buffer_.data(), sizeof length);
-  if (buffer_.size() - sizeof length < length) return std::nullopt;
-  const auto begin = buffer_.begin() + sizeof length;
-  const json object = json::from_cbor(begin, begin + length);
-  buffer_.erase(buffer_.begin(), begin + length);
-  return message_of(object);
+  const auto frame = frames_.next();
+  if (!frame) return std::nullopt;
+  return message_of(json::from_cbor(*frame));
 }
 
 }  // namespace ltsim

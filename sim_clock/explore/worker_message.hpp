@@ -1,7 +1,6 @@
 // What a worker sends to its parent, at once when it happens, so that it outlives the worker.
 //
-// On the pipe each message is a 32-bit length in the host's byte order and so many bytes of CBOR. A worker that
-// dies while it writes leaves a part of a message behind: such a part is ignored.
+// Each message is CBOR, in a frame of its own (frames.hpp).
 #pragma once
 
 #include <cstddef>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/explore/frames.hpp"
 
 namespace ltsim {
 
@@ -31,19 +31,19 @@ struct WorkerFinished {};
 
 using WorkerMessage = std::variant<WorkerFoundFailure, WorkerGaveUp, WorkerFinished>;
 
-/// @return the bytes for the pipe, length included
+/// @return the bytes of the frame
 [[nodiscard]] std::vector<std::uint8_t> encode(const WorkerMessage& message);
 
-/// Puts messages together again, from whatever pieces the pipe delivers.
+/// Puts messages together again, from whatever pieces arrive.
 class WorkerMessageReader {
  public:
-  void add(std::span<const std::uint8_t> bytes) { buffer_.insert(buffer_.end(), bytes.begin(), bytes.end()); }
+  void add(std::span<const std::uint8_t> bytes) { frames_.add(bytes); }
   /// @return the next whole message, if it has arrived
   /// @throw  std::exception if it is none of ours
   [[nodiscard]] std::optional<WorkerMessage> next();
 
  private:
-  std::vector<std::uint8_t> buffer_;
+  FrameReader frames_;
 };
 
 }  // namespace ltsim

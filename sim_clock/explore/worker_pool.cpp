@@ -13,6 +13,7 @@
 #include "sim_clock/check/self_check.hpp"
 #include "sim_clock/explore/hash_set.hpp"
 #include "sim_clock/explore/same_failure.hpp"
+#include "sim_clock/explore/worker_message.hpp"
 #include "sim_clock/explore/worker_process.hpp"
 
 namespace ltsim {
@@ -40,6 +41,7 @@ struct Share {
   WorkerOrder order;
   WorkerProgress& progress;
   std::optional<WorkerProcess> process;  ///< none: nothing is left to do
+  WorkerMessageReader messages;          ///< of the process
   bool said_its_last = false;            ///< the process has sent the message that ends its work
   KilledFor killed_for = KilledFor::nothing;
   unsigned idle_deaths_count = 0;
@@ -112,7 +114,8 @@ class WorkerPool {
     share.killed_for = KilledFor::nothing;
     share.order.failures_sent = share.failures.size();
     share.moved_at = share.asked_at = Clock::now();
-    share.process.emplace(share.order, progress_);
+    share.messages = {};
+    share.process.emplace([&](int socket) { run_worker(share.order, progress_, socket); });
   }
 
   void wait_for_messages() {
@@ -130,14 +133,15 @@ class WorkerPool {
   }
 
   void listen(Share& share) {
-    for (WorkerMessage& message : share.process->receive()) {
-      if (auto* const found = std::get_if<WorkerFoundFailure>(&message)) {
+    share.messages.add(share.process->receive());
+    while (auto message = share.messages.next()) {
+      if (auto* const found = std::get_if<WorkerFoundFailure>(&*message)) {
         if (share.failures.size() < found->place) share.failures.resize(found->place);
         share.failures[found->place - 1] = std::move(found->failure);
         continue;
       }
       share.said_its_last = true;
-      if (auto* const gave_up = std::get_if<WorkerGaveUp>(&message)) {
+      if (auto* const gave_up = std::get_if<WorkerGaveUp>(&*message)) {
         progress_.bounds().end_at(gave_up->execution);
         errors_.push_back(std::move(*gave_up));
       }

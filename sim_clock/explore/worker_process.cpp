@@ -1,7 +1,7 @@
 #include "sim_clock/explore/worker_process.hpp"
 
-#include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,9 +23,9 @@ namespace {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(WorkerOrder order, SharedProgress& progress) {
+WorkerProcess::WorkerProcess(const std::function<void(int)>& work) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_errno("pipe of a worker");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw_errno("socket of a worker");
   std::fflush(nullptr);  // or the child would print it again
   const pid_t parent = getpid();
   const pid_t id = fork();
@@ -40,13 +40,14 @@ WorkerProcess::WorkerProcess(WorkerOrder order, SharedProgress& progress) {
     if (getppid() != parent) _exit(0);  // it died before that
     ::signal(SIGINT, SIG_IGN);
     ::signal(SIGTERM, SIG_IGN);
-    order.pipe = ends[1];
-    run_worker(order, progress);
+    close(ends[0]);
+    work(ends[1]);
+    std::fflush(nullptr);  // what a scenario printed
+    _exit(0);
   }
   id_ = id;
   descriptor_ = ends[0];
   close(ends[1]);  // the only one that is left is the child's: it closes with it
-  fcntl(descriptor_, F_SETFL, O_NONBLOCK);
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -57,22 +58,21 @@ WorkerProcess::~WorkerProcess() {
   close(descriptor_);
 }
 
-std::vector<WorkerMessage> WorkerProcess::receive() {
+std::vector<std::uint8_t> WorkerProcess::receive() {
   std::array<std::uint8_t, 16 * 1024> part{};
+  std::vector<std::uint8_t> all;
   for (;;) {
-    const ssize_t count = read(descriptor_, part.data(), part.size());
+    const ssize_t count = recv(descriptor_, part.data(), part.size(), MSG_DONTWAIT);
     if (count > 0) {
-      reader_.add(std::span{part}.first(static_cast<std::size_t>(count)));
-    } else if (count == 0) {
-      has_ended_ = true;
+      all.insert(all.end(), part.begin(), part.begin() + count);
+    } else if (count == 0 || errno == ECONNRESET) {
+      has_ended_ = true;  // reset: it had not read all that was sent to it
       break;
     } else if (errno != EINTR) {
       break;  // nothing more has arrived
     }
   }
-  std::vector<WorkerMessage> messages;
-  while (auto message = reader_.next()) messages.push_back(std::move(*message));
-  return messages;
+  return all;
 }
 
 void WorkerProcess::signal(int signal) const noexcept {

@@ -1,13 +1,12 @@
-// The process of a worker, as its parent sees it: forked, listened to, killed, waited for.
+// A process that works for the one that has forked it, as that one sees it: forked, listened to, killed, waited for.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
-
-#include "sim_clock/explore/worker.hpp"
-#include "sim_clock/explore/worker_message.hpp"
 
 namespace ltsim {
 
@@ -15,19 +14,20 @@ class WorkerProcess {
  public:
   /// Forks. The child dies with its parent, and leaves SIGINT and SIGTERM, which a terminal sends to both, to
   /// it.
-  /// @param order  its pipe is made here
+  /// @param work  runs in the child, with its end of a socket to the parent; the child ends with it
   /// @throw std::system_error
-  WorkerProcess(WorkerOrder order, SharedProgress& progress);
+  explicit WorkerProcess(const std::function<void(int socket)>& work);
   /// Kills it if it still lives.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  /// Becomes readable when a message arrives or the process has ended.
+  /// The parent's end of the socket; writing to it waits, reading does not. Becomes readable when something arrives or the process
+  /// has ended.
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 
-  /// Does not wait. @return the messages that have arrived
-  [[nodiscard]] std::vector<WorkerMessage> receive();
+  /// Does not wait. @return what has arrived
+  [[nodiscard]] std::vector<std::uint8_t> receive();
   /// Whether the process has ended, and receive() has returned all that it sent.
   [[nodiscard]] bool has_ended() const noexcept { return has_ended_; }
 
@@ -41,7 +41,6 @@ class WorkerProcess {
   pid_t id_ = -1;  // -1: waited for
   int descriptor_ = -1;
   bool has_ended_ = false;
-  WorkerMessageReader reader_;
 };
 
 /// @param status  of wait(2)

@@ -1,6 +1,7 @@
 // A search in parts comes to what the search in one go does, however it is split.
 #include "sim_clock/explore/search_tree.hpp"
 
+#include <array>
 #include <atomic>
 #include <string>
 #include <vector>
@@ -114,11 +115,12 @@ TEST_F(SearchTreeTest, counts_of_programs_with_known_traces_are_those_of_one_go)
 void some_program(World& world, std::uint64_t seed, bool fails) {
   RandomGenerator plan{seed};
   std::array<Word, 2> words{};
-  std::array<std::array<std::uint32_t, 3>, 3> steps{};
+  const std::size_t tasks = 3 + seed % 2;
+  std::vector<std::vector<std::uint32_t>> steps(tasks, std::vector<std::uint32_t>(tasks == 3 ? 3 : 2));
   for (auto& task : steps) {
     for (std::uint32_t& step : task) step = plan.below(8);
   }
-  start_tasks(world, 3, [&](std::uint32_t i) {
+  start_tasks(world, static_cast<std::uint32_t>(tasks), [&](std::uint32_t i) {
     for (const std::uint32_t step : steps[i]) {
       Word& word = words[step % 2];
       std::uint32_t expected = 0;
@@ -173,6 +175,49 @@ TEST_F(SearchTreeTest, numbers_that_are_asked_for_are_split_as_well) {
         of.require(of.choose("second", 3) < 3, "more than there are");
       },
       {}, 6);
+}
+
+TEST_F(SearchTreeTest, after_a_part_that_failed_none_is_searched_any_more) {
+  SearchTree tree;
+  SearchTree::Part& root = *tree.take();
+  tree.give_back(root, {.rest = {{.count = 3}, {.count = 2}}}, true);
+  SearchTree::Part& first = *tree.take();
+  SearchTree::Part& second = *tree.take();
+  SearchTree::Part& third = *tree.take();
+  EXPECT_EQ(tree.take(), nullptr);
+  tree.give_back(second, {.end = SliceEnd::failed, .counts = {.executions = 1}}, true);
+  tree.give_back(third, {.counts = {.executions = 5}, .rest = {{.count = 2}}}, true);
+  EXPECT_EQ(tree.take(), nullptr);
+  EXPECT_FALSE(tree.is_over());
+  tree.give_back(first, {.end = SliceEnd::over, .counts = {.executions = 2}}, true);
+  EXPECT_EQ(tree.take(), nullptr);
+  EXPECT_TRUE(tree.is_over());
+  EXPECT_FALSE(tree.is_complete());
+  EXPECT_EQ(tree.ended(), &second);
+  EXPECT_EQ(tree.counts().executions, 3U);
+}
+
+TEST_F(SearchTreeTest, what_is_asked_for_waits_for_the_parts_before) {
+  const Decision of_three{.is_of_tasks = true, .chosen = 0, .enabled = 0b1111};
+  Decision decision = of_three;
+  decision.must_try(0);
+  decision.must_try(1);
+  SearchTree tree;
+  SearchTree::Part& root = *tree.take();
+  tree.give_back(root, {.rest = {decision}}, true);
+  SearchTree::Part& first = *tree.take();
+  SearchTree::Part& second = *tree.take();
+  EXPECT_EQ(SearchTree::item_of(second).decisions.front().tried, 0b0001U);
+  // Both find one that must be tried; the search in one go finds that of the first part first.
+  tree.give_back(second, {.end = SliceEnd::over, .requests = {{.decision = 0, .any = 0b0100}}}, true);
+  EXPECT_EQ(tree.take(), nullptr);
+  tree.give_back(first, {.end = SliceEnd::over, .requests = {{.decision = 0, .any = 0b1000}}}, true);
+  const SearchTree::Part& third = *tree.take();
+  EXPECT_EQ(SearchTree::item_of(third).decisions.front().chosen, 3U);
+  EXPECT_EQ(SearchTree::item_of(third).decisions.front().tried, 0b0011U);
+  const SearchTree::Part& fourth = *tree.take();
+  EXPECT_EQ(SearchTree::item_of(fourth).decisions.front().chosen, 2U);
+  EXPECT_EQ(SearchTree::item_of(fourth).decisions.front().tried, 0b1011U);
 }
 
 TEST_F(SearchTreeTest, of_a_text_that_is_none_nothing_is_read) {
