@@ -151,6 +151,7 @@ ProveReport prove_in_workers(const Scenario& scenario, const ProveOptions& optio
   return proof.final_report(runner);
 } catch (const Explorer::NotSimulable& trouble) {
   ProveReport report = earlier;
+  report.checkpoint.clear();
   report.error = trouble.message;
   return report;
 }

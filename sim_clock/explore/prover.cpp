@@ -56,7 +56,7 @@ ProveReport ProofUnderWay::final_report(SearchRunner& runner) const {
       final.failure->execution = final.counts.executions + final.counts.redundant;
     }
   }
-  if (!final.complete) final.checkpoint = tree_.checkpoint();
+  if (!final.complete && !final.error) final.checkpoint = tree_.checkpoint();
   return final;
 }
 
@@ -80,6 +80,7 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
   return proof.final_report(runner);
 } catch (const Explorer::NotSimulable& trouble) {
   ProveReport report = earlier;
+  report.checkpoint.clear();
   report.error = trouble.message;
   return report;
 }

@@ -21,7 +21,8 @@ struct ProveReport {
   double seconds = 0;
   std::optional<Failure> failure;    ///< the search ends at the first
   std::optional<std::string> error;  ///< why no result counts
-  std::string checkpoint;            ///< SearchTree::checkpoint(), unless it is complete
+  /// SearchTree::checkpoint(), if there is something to go on with.
+  std::string checkpoint;
 };
 
 /// Called some ten times a second. @return false: stop

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -71,6 +72,13 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
   }
 }
 
+/// @param shown  when the line was shown last
+std::string progress_text(const ExploreProgress& progress, const ExploreProgress& shown) {
+  const double executions = static_cast<double>(progress.executions - shown.executions);
+  return fmt::format("{} executions, {:.0f} per second, {} failures", progress.executions,
+                     executions / (progress.elapsed - shown.elapsed).count(), progress.failures);
+}
+
 /// Tells each failure and writes its schedule.
 void tell_failures(const ExploreArguments& arguments, std::string_view program, ScenarioReport& report) {
   for (const Failure& failure : report.explored.failures) {
@@ -92,14 +100,16 @@ ScenarioReport explore_one_scenario(const Scenario& scenario, const ExploreArgum
   WorkerPoolReport pool_report;
   {
     ProgressLine line{scenario.name};
-    pool_report =
-        explore_in_workers(scenario, [&] { return make_strategy(arguments.strategy); }, arguments.options,
-                           {.jobs = arguments.jobs,
-                            .hang_after = std::chrono::duration<double>{arguments.hang_seconds},
-                            .on_progress = [&](const ExploreProgress& progress) {
-                              line.show(progress);
-                              return InterruptGuard::signal() == 0;
-                            }});
+    ExploreProgress shown;
+    pool_report = explore_in_workers(
+        scenario, [&] { return make_strategy(arguments.strategy); }, arguments.options,
+        {.jobs = arguments.jobs,
+         .hang_after = std::chrono::duration<double>{arguments.hang_seconds},
+         .on_progress = [&](const ExploreProgress& progress) {
+           line.show(progress.elapsed,
+                     [&] { return progress_text(progress, std::exchange(shown, progress)); });
+           return InterruptGuard::signal() == 0;
+         }});
   }
   ScenarioReport report{.scenario = scenario.name,
                         .strategy = arguments.strategy,

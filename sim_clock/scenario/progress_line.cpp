@@ -15,17 +15,12 @@ ProgressLine::~ProgressLine() {
   if (is_shown_) std::fputs("\r\x1b[K", stderr);
 }
 
-void ProgressLine::show(const ExploreProgress& progress) {
-  const auto since = progress.elapsed - shown_.elapsed;
-  if (!is_terminal_ || since < std::chrono::seconds{1}) return;
-  const double executions = static_cast<double>(progress.executions - shown_.executions);
-  std::fputs(fmt::format("\r\x1b[K{}  {} executions, {:.0f} per second, {} failures", scenario_,
-                         progress.executions, executions / since.count(), progress.failures)
-                 .c_str(),
-             stderr);
+void ProgressLine::show(std::chrono::duration<double> elapsed, const std::function<std::string()>& text) {
+  if (!is_terminal_ || elapsed - shown_at_ < std::chrono::seconds{1}) return;
+  std::fputs(fmt::format("\r\x1b[K{}  {}", scenario_, text()).c_str(), stderr);
   std::fflush(stderr);
   is_shown_ = true;
-  shown_ = progress;
+  shown_at_ = elapsed;
 }
 
 }  // namespace ltsim

@@ -1,10 +1,10 @@
-// How far an exploration is, in one line that is written over, for a person who waits at a terminal.
+// How far something is, in one line that is written over, for a person who waits at a terminal.
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <string>
 #include <string_view>
-
-#include "sim_clock/explore/worker_pool.hpp"
 
 namespace ltsim {
 
@@ -18,13 +18,15 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// At most once a second is anything written.
-  void show(const ExploreProgress& progress);
+  /// @param elapsed  since the begin
+  /// @param text     asked for if it is written; comes after the name of the scenario
+  void show(std::chrono::duration<double> elapsed, const std::function<std::string()>& text);
 
  private:
   std::string scenario_;
   bool is_terminal_;
   bool is_shown_ = false;
-  ExploreProgress shown_;
+  std::chrono::duration<double> shown_at_{0};
 };
 
 }  // namespace ltsim

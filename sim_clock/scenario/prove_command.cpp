@@ -9,12 +9,14 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "sim_clock/explore/proof_file.hpp"
+#include "sim_clock/explore/prove_in_workers.hpp"
 #include "sim_clock/explore/prover.hpp"
+#include "sim_clock/explore/worker_pool.hpp"
 #include "sim_clock/scenario/command.hpp"
 #include "sim_clock/scenario/interrupt.hpp"
+#include "sim_clock/scenario/progress_line.hpp"
 #include "sim_clock/scenario/report.hpp"
 
 namespace ltsim {
@@ -28,35 +30,14 @@ struct ProveArguments {
   std::string checkpoint_file;
   bool begins_anew = false;
   std::string out_folder = "out";
+  unsigned jobs = 1;
 };
 
-/// One line that is written over, for a person who waits at a terminal.
-class ProgressOfProof {
- public:
-  explicit ProgressOfProof(std::string_view scenario)
-      : scenario_(scenario), is_terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~ProgressOfProof() {
-    if (is_shown_) fmt::print(stderr, "\r\033[K");
-  }
-  ProgressOfProof(const ProgressOfProof&) = delete;
-  ProgressOfProof& operator=(const ProgressOfProof&) = delete;
-
-  void show(const ProveReport& report) {
-    if (!is_terminal_ || report.seconds - shown_at_ < 1) return;
-    shown_at_ = report.seconds;
-    is_shown_ = true;
-    const double left = report.done > 0 ? report.seconds * (1 - report.done) / report.done : 0;
-    fmt::print(stderr,
-               "\r\033[K{}  {} executions, {:.0f} s, {:.1f} % of what is known of, {:.0f} s left for that",
-               scenario_, report.counts.executions, report.seconds, 100 * report.done, left);
-  }
-
- private:
-  std::string scenario_;
-  bool is_terminal_;
-  bool is_shown_ = false;
-  double shown_at_ = 0;
-};
+std::string progress_text(const ProveReport& report) {
+  const double left = report.done > 0 ? report.seconds * (1 - report.done) / report.done : 0;
+  return fmt::format("{} executions, {:.0f} s, {:.1f} % of what is known of, {:.0f} s left for that",
+                     report.counts.executions, report.seconds, 100 * report.done, left);
+}
 
 /// @param text  a number, or "any"
 std::optional<unsigned> to_silences(const std::string& text) {
@@ -82,6 +63,18 @@ ProveReport earlier_part(const ProveArguments& arguments, const std::string& pat
   return *found;
 }
 
+ProveReport run_proof(const Scenario& scenario, const ProveArguments& arguments, const ProveReport& earlier) {
+  ProgressLine line{scenario.name};
+  const auto on_progress = [&](const ProveReport& so_far) {
+    line.show(std::chrono::duration<double>{so_far.seconds}, [&] { return progress_text(so_far); });
+    return InterruptGuard::signal() == 0;
+  };
+  if (arguments.jobs != 1)
+    return prove_in_workers(scenario, arguments.options, {.jobs = arguments.jobs}, earlier, on_progress);
+  World world;
+  return Prover{world}.prove(scenario, arguments.options, earlier, on_progress);
+}
+
 int tell_failure(const ProveArguments& arguments, std::string_view program, const ProveReport& report) {
   const Failure& failure = *report.failure;
   const std::string path = file_of_scenario(arguments.out_folder, arguments.scenario, ".schedule");
@@ -105,24 +98,24 @@ int prove(const ProveArguments& arguments, std::string_view program) {
         "difference are not known"};
   if (!bounds.silences && !bounds.states)
     throw UsageError{"--silences any needs --states: otherwise only a bounded search ends"};
+  if (bounds.states && arguments.jobs != 1)
+    throw UsageError{
+        "--jobs cannot be with --states: which states were seen before depends on the order of the search"};
   const Scenario& scenario = scenario_of_name(arguments.scenario);
   const std::string checkpoint_path =
       arguments.checkpoint_file.empty() ? file_of_scenario(arguments.out_folder, arguments.scenario, ".proof")
                                         : arguments.checkpoint_file;
-  fmt::print("{}  {}\n", scenario.name, describe_bounds(arguments.options));
+  fmt::print("{}  {}{}\n", scenario.name, describe_bounds(arguments.options),
+             arguments.jobs == 1 ? "" : fmt::format(", {} jobs", arguments.jobs));
   const ProveReport earlier = earlier_part(arguments, checkpoint_path);
   std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
   const InterruptGuard interrupt;
-  ProveReport report;
-  {
-    World world;
-    ProgressOfProof line{scenario.name};
-    report = Prover{world}.prove(scenario, arguments.options, earlier, [&](const ProveReport& so_far) {
-      line.show(so_far);
-      return InterruptGuard::signal() == 0;
-    });
-  }
+  const ProveReport report = run_proof(scenario, arguments, earlier);
   if (report.error) {
+    if (!report.checkpoint.empty()) {
+      write_asked_for_file(checkpoint_path, to_proof(report, arguments.scenario, arguments.options));
+      fmt::print("  the same command goes on from {}\n", checkpoint_path);
+    }
     fmt::print(stderr, "ltsim: {}\n", *report.error);
     return exit_our_fault;
   }
@@ -182,6 +175,11 @@ void add_prove_command(CLI::App& app, Command& chosen) {
                    "real time for making the schedule of a failure small; 0: as it was found")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "worker processes; the result does not depend on it; not with --states")
+      ->capture_default_str()
+      ->check(CLI::Range(1U, WorkerPoolOptions::jobs_max));
   command->add_option(
       "--checkpoint", arguments->checkpoint_file,
       "file for where the search stands when it is interrupted; SCENARIO.proof in the folder of schedules if "

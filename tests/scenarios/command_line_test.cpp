@@ -81,22 +81,82 @@ TEST_F(CommandLineTest, prove_finds_the_late_answer_in_a_silence_and_its_schedul
   EXPECT_EQ(ltsim("replay paper-h03-stale-answer.schedule").exit_code, 1);
 }
 
+/// What a proof says that it has covered; without that, all that it says.
+std::string coverage_of(const Result& result) {
+  const std::size_t begin = result.output.find("  all ");
+  return begin == std::string::npos ? result.output
+                                    : result.output.substr(begin, result.output.rfind(", ") - begin);
+}
+
 TEST_F(CommandLineTest, a_proof_that_is_interrupted_goes_on_where_it_was) {
   const std::string command = "prove races/o02-stale-response-corrected --silences 1 --out . --preemptions ";
-  const auto coverage_of = [](const Result& result) {
-    const std::size_t begin = result.output.find("  all ");
-    return begin == std::string::npos ? result.output
-                                      : result.output.substr(begin, result.output.find('\n', begin) - begin);
-  };
   const std::string whole = coverage_of(ltsim(command + "2 --anew"));
-  const Result begun = ltsim(command + "2 --seconds 0.001");
-  EXPECT_NE(begun.output.find("no proof yet"), std::string::npos) << begun.output;
-  const Result other = ltsim(command + "1");
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.output.find("of other bounds"), std::string::npos) << other.output;
-  const Result ended = ltsim(command + "2");
-  EXPECT_NE(ended.output.find("goes on from"), std::string::npos) << ended.output;
-  EXPECT_EQ(coverage_of(ended), whole);
+  for (const std::string jobs : {"", " --jobs 2", " --jobs 3"}) {
+    const Result begun = ltsim(command + "2 --seconds 0.001" + jobs);
+    EXPECT_NE(begun.output.find("no proof yet"), std::string::npos) << begun.output;
+    const Result other = ltsim(command + "1" + jobs);
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_NE(other.output.find("of other bounds"), std::string::npos) << other.output;
+    // However many workers the first part had.
+    const Result ended = ltsim(command + "2" + (jobs.empty() ? " --jobs 2" : ""));
+    EXPECT_NE(ended.output.find("goes on from"), std::string::npos) << ended.output;
+    EXPECT_EQ(coverage_of(ended), whole) << jobs;
+  }
+}
+
+TEST_F(CommandLineTest, what_a_proof_covers_does_not_depend_on_the_number_of_jobs) {
+  for (const std::string scenario :
+       {"paper/three-requests", "paper/h05b-refused-yet-executed", "paper/h09-late-emulator-corrected",
+        "races/o07-lost-token-corrected", "races/weak-seqlock-even-store-corrected",
+        "races/stale-answer-modulo-8-corrected", "paper/three-requests --preemptions 1 --silences 1"}) {
+    const std::string whole = coverage_of(ltsim("prove --out . " + scenario));
+    EXPECT_EQ(whole.find("  all "), 0U) << whole;
+    for (const std::string jobs : {" --jobs 2", " --jobs 3"})
+      EXPECT_EQ(coverage_of(ltsim("prove --out . " + scenario + jobs)), whole) << scenario << jobs;
+  }
+}
+
+TEST_F(CommandLineTest, a_proof_by_several_jobs_finds_the_failure_that_one_finds) {
+  const std::string command =
+      "prove paper/h03-stale-answer --preemptions 2 --silences 1 --minimize-seconds 0 --out .";
+  EXPECT_EQ(ltsim(command).exit_code, 1);
+  const std::string schedule = read("paper-h03-stale-answer.schedule");
+  EXPECT_FALSE(schedule.empty());
+  std::filesystem::remove(folder_.path() / "paper-h03-stale-answer.schedule");
+  EXPECT_EQ(ltsim(command + " --jobs 3").exit_code, 1);
+  EXPECT_EQ(read("paper-h03-stale-answer.schedule"), schedule);
+}
+
+TEST_F(CommandLineTest, a_signal_ends_a_proof_by_several_jobs_and_leaves_a_checkpoint) {
+  const std::string command =
+      LTSIM_PROGRAM " prove paper/three-requests --preemptions 9 --silences 9 --jobs 2 --out .";
+  const Result stopped = shell("timeout --preserve-status -s INT 0.5 " + command);
+  EXPECT_EQ(stopped.exit_code, 130) << stopped.output;
+  EXPECT_NE(stopped.output.find("no proof yet"), std::string::npos) << stopped.output;
+  const Result again = shell(command + " --seconds 0.1");
+  EXPECT_EQ(again.exit_code, 0) << again.output;
+  EXPECT_NE(again.output.find("goes on from"), std::string::npos) << again.output;
+}
+
+TEST_F(CommandLineTest, a_proof_whose_worker_dies_says_so_and_where_it_can_go_on) {
+  const Result died = shell(DOOMED_PROGRAM " prove doomed/kills --jobs 2 --out .");
+  EXPECT_EQ(died.exit_code, 3) << died.output;
+  EXPECT_NE(died.output.find("a worker process died of SIGKILL"), std::string::npos) << died.output;
+  EXPECT_NE(died.output.find("the same command goes on from ./doomed-kills.proof"), std::string::npos)
+      << died.output;
+  const Result again = shell(DOOMED_PROGRAM " prove doomed/kills --jobs 2 --out .");
+  EXPECT_EQ(again.exit_code, 3) << again.output;
+  EXPECT_NE(again.output.find("goes on from"), std::string::npos) << again.output;
+}
+
+TEST_F(CommandLineTest, a_checkpoint_of_another_version_is_refused) {
+  write("paper-one-request.proof", "ltsim proof 1\nscenario  paper/one-request\n");
+  const Result result = ltsim("prove paper/one-request --out .");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.output.find("paper-one-request.proof: is of another version of this program"),
+            std::string::npos)
+      << result.output;
+  EXPECT_EQ(ltsim("prove paper/one-request --out . --anew").exit_code, 0);
 }
 
 TEST_F(CommandLineTest, prove_refuses_silences_without_a_bound_on_preemptions) {
@@ -270,6 +330,9 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
       {"explore paper/one-request --executions 0", "--executions"},
       {"explore paper/one-request --strategy clever", "clever"},
       {"explore paper/one-request --jobs 0", "--jobs"},
+      {"prove paper/one-request --jobs 0", "--jobs: Value 0 not in range 1 to 256"},
+      {"prove paper/one-request --jobs 257", "--jobs: Value 257 not in range 1 to 256"},
+      {"prove paper/one-request --jobs 2 --states", "--jobs cannot be with --states"},
       {"replay no-such-file", "no-such-file: cannot be read"},
       {"minimize no-such-file", "no-such-file: cannot be read"},
       {"minimize passes.schedule", "passes.schedule: does not fail as it says"},
@@ -292,8 +355,8 @@ TEST_F(CommandLineTest, bad_usage_exits_with_2_and_says_what_is_wrong) {
 TEST_F(CommandLineTest, every_program_shows_a_printable_help) {
   for (const char* command :
        {LTSIM_PROGRAM " --help", LTSIM_PROGRAM " explore --help", LTSIM_PROGRAM " replay --help",
-        LTSIM_PROGRAM " minimize --help", LTSIM_PROGRAM " fuzz --help", PLC_EMULATOR_PROGRAM " --help",
-        CNC_KERNEL_PROGRAM " --help"}) {
+        LTSIM_PROGRAM " minimize --help", LTSIM_PROGRAM " prove --help", LTSIM_PROGRAM " fuzz --help",
+        PLC_EMULATOR_PROGRAM " --help", CNC_KERNEL_PROGRAM " --help"}) {
     const Result result = shell(command);
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_GT(result.output.size(), 100U) << command;
