@@ -83,9 +83,6 @@ class ProofWorkers {
       wait_for_slices();
       for (ProofWorker& worker : workers_) take_slice(worker);
     }
-    for (ProofWorker& worker : workers_) {
-      if (worker.part != nullptr) SearchTree::give_back_untouched(*worker.part);
-    }
     return death_;
   }
 
@@ -141,14 +138,12 @@ ProveReport prove_in_workers(const Scenario& scenario, const ProveOptions& optio
   World world;
   const SignalGuard signals;
   SearchRunner runner{world, scenario, options};
-  if (death) {
-    ProveReport report = proof.final_report(runner);
-    report.error = *death;
-    return report;
-  }
-  const SearchTree::Part* const ended = proof.tree().ended();
-  if (ended != nullptr && SearchTree::end_of(*ended).end == SliceEnd::failed) runner.warm_up();
-  return proof.final_report(runner);
+  if (const SearchTree::Part* const ended = proof.tree().ended();
+      ended != nullptr && SearchTree::end_of(*ended).end == SliceEnd::failed)
+    runner.warm_up();
+  ProveReport report = proof.final_report(runner);
+  if (death && !report.error) report.error = *death;
+  return report;
 } catch (const Explorer::NotSimulable& trouble) {
   ProveReport report = earlier;
   report.checkpoint.clear();

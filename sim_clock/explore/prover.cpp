@@ -48,7 +48,7 @@ ProveReport ProofUnderWay::report() const {
 ProveReport ProofUnderWay::final_report(SearchRunner& runner) const {
   ProveReport final = report();
   final.states = runner.states();
-  if (const SearchTree::Part* const ended = tree_.ended(); ended != nullptr && tree_.is_over()) {
+  if (const SearchTree::Part* const ended = tree_.ended()) {
     if (SearchTree::end_of(*ended).end == SliceEnd::in_error) {
       final.error = SearchTree::end_of(*ended).error;
     } else {

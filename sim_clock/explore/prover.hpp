@@ -19,7 +19,7 @@ struct ProveReport {
   double done = 0;           ///< of the search, by what was known of it at the end: 0 to 1
   bool complete = false;     ///< all of it
   double seconds = 0;
-  std::optional<Failure> failure;    ///< the search ends at the first
+  std::optional<Failure> failure;    ///< the search ends at the first; an interrupted one by workers, at any
   std::optional<std::string> error;  ///< why no result counts
   /// SearchTree::checkpoint(), if there is something to go on with.
   std::string checkpoint;

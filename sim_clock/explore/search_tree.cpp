@@ -23,8 +23,8 @@ class SearchTree::Part {
 
   // A leaf.
   std::vector<Decision> rest;  // empty at first
-  SearchedSlice ended;
-  SearchCounts counts_now;  // of what the process that is at it has done
+  SearchedSlice ended;         // the last of it, if it has ended
+  SearchCounts counts_now;     // of what the process that is at it has done
   double done_now = 0;
 
   // A branch.
@@ -91,6 +91,7 @@ const Part* first_ended(const Part& part) noexcept {
 bool add_counts(const Part& part, SearchCounts& to) noexcept {
   to += part.counts;
   if (part.state == Part::State::is_searched) to += part.counts_now;
+  if (part.state == Part::State::has_ended) to += part.ended.counts;
   return part.state != Part::State::has_ended &&
          std::all_of(part.parts.begin(), part.parts.end(),
                      [&](const auto& each) { return add_counts(*each, to); });
@@ -277,7 +278,8 @@ SearchItem SearchTree::item_of(const Part& leaf) {
     item.decisions.push_back(part->begun);
   std::reverse(item.decisions.begin(), item.decisions.end());
   item.settled = item.decisions.size();
-  item.decisions.insert(item.decisions.end(), leaf.rest.begin(), leaf.rest.end());
+  const auto& rest = leaf.state == Part::State::has_ended ? leaf.ended.rest : leaf.rest;
+  item.decisions.insert(item.decisions.end(), rest.begin(), rest.end());
   return item;
 }
 
@@ -288,16 +290,19 @@ void SearchTree::note_progress(Part& leaf, const SearchCounts& counts, double do
 
 void SearchTree::give_back(Part& leaf, SearchedSlice slice, bool more_are_wanted) {
   LTSIM_CHECK(leaf.state == Part::State::is_searched);
+  if (slice.end == SliceEnd::failed || slice.end == SliceEnd::in_error) {
+    leaf.state = Part::State::has_ended;
+    leaf.ended = std::move(slice);
+    return;
+  }
+  leaf.state = slice.end == SliceEnd::over ? Part::State::is_over : Part::State::waits;
   leaf.counts += slice.counts;
+  leaf.rest = std::move(slice.rest);
   for (const TreeRequest& request : slice.requests) add_request(leaf.requests, request);
-  leaf.rest = slice.rest;
-  leaf.state = slice.end == SliceEnd::over      ? Part::State::is_over
-               : slice.end == SliceEnd::stopped ? Part::State::waits
-                                                : Part::State::has_ended;
   const bool can_be_split =
-      leaf.state == Part::State::waits &&
+      !leaf.is_over() &&
       std::any_of(leaf.rest.begin(), leaf.rest.end(), [](const Decision& each) { return each.has_next(); });
-  leaf.ended = std::move(slice);
+  // What is over is gone after that.
   for (Part* part = leaf.parent; part != nullptr; part = part->parent) settle(*part);
   if (!more_are_wanted || !can_be_split) return;
   // Further down, parts become smaller, and there are more branches for requests to pass.
@@ -307,8 +312,6 @@ void SearchTree::give_back(Part& leaf, SearchedSlice slice, bool more_are_wanted
     part = &part->split();
   }
 }
-
-void SearchTree::give_back_untouched(Part& leaf) noexcept { leaf.state = Part::State::waits; }
 
 /// Takes from the first of its parts what it asks for, and goes on to the next when that is over.
 void SearchTree::settle(Part& branch) {

@@ -75,14 +75,12 @@ class SearchTree {
   /// A leaf for a process to be at: the first that nobody is at; if there is none, it is begun, where most may be left. None after
   /// one that failed, or in which there was an error. @return null: there is none now
   [[nodiscard]] Part* take();
+  /// Where the search of it stands; if it has failed, at the execution that does.
   [[nodiscard]] static SearchItem item_of(const Part& leaf);
   /// What counts() and done() are to know of it while the process is at it.
   static void note_progress(Part& leaf, const SearchCounts& counts, double done) noexcept;
   /// The process is not at it any more. @param more_are_wanted  split it, if it can be
   void give_back(Part& leaf, SearchedSlice slice, bool more_are_wanted);
-  /// Nothing is known of what the process has done.
-  static void give_back_untouched(Part& leaf) noexcept;
-
   /// Everything was searched.
   [[nodiscard]] bool is_complete() const noexcept;
   /// The first part that failed or in which there was an error; null: none.
@@ -96,7 +94,7 @@ class SearchTree {
   /// How much of the search is over, by what is known of it now: 0 to 1. More may turn up.
   [[nodiscard]] double done() const noexcept;
 
-  /// All of it, as lines. Parts that processes are at stand where they were when they were taken.
+  /// All of it, as lines. Parts that processes are at, and those that failed, stand where they were when they were taken.
   [[nodiscard]] std::string checkpoint() const;
   [[nodiscard]] static std::optional<SearchTree> parse(std::string_view checkpoint);
 

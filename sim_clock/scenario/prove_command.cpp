@@ -1,6 +1,8 @@
 // ltsim prove: runs all executions of a scenario within bounds, and says exactly what was covered.
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -33,10 +35,13 @@ struct ProveArguments {
   unsigned jobs = 1;
 };
 
+/// 100 is what all of it would be, and more may turn up.
+double percent_done(const ProveReport& report) { return std::min(99.9, std::floor(1000 * report.done) / 10); }
+
 std::string progress_text(const ProveReport& report) {
   const double left = report.done > 0 ? report.seconds * (1 - report.done) / report.done : 0;
   return fmt::format("{} executions, {:.0f} s, {:.1f} % of what is known of, {:.0f} s left for that",
-                     report.counts.executions, report.seconds, 100 * report.done, left);
+                     report.counts.executions, report.seconds, percent_done(report), left);
 }
 
 /// @param text  a number, or "any"
@@ -117,7 +122,7 @@ int prove(const ProveArguments& arguments, std::string_view program) {
       fmt::print("  the same command goes on from {}\n", checkpoint_path);
     }
     fmt::print(stderr, "ltsim: {}\n", *report.error);
-    return exit_our_fault;
+    if (!report.failure) return exit_our_fault;
   }
   fmt::print("{}  {}\n  {} scheduling points, {} executions left when they came to nothing new, {:.1f} s\n",
              scenario.name, describe_coverage(report, arguments.options), report.counts.points,
@@ -130,7 +135,7 @@ int prove(const ProveArguments& arguments, std::string_view program) {
   }
   write_asked_for_file(checkpoint_path, to_proof(report, arguments.scenario, arguments.options));
   fmt::print("  no proof yet: about {:.1f} % of what is known of is done; the same command goes on from {}\n",
-             100 * report.done, checkpoint_path);
+             percent_done(report), checkpoint_path);
   return InterruptGuard::signal() == 0 ? exit_nothing_found : exit_of_signal(InterruptGuard::signal());
 }
 

@@ -181,6 +181,19 @@ TEST_P(ProveInWorkers, who_asks_to_stop_does_not_wait_for_an_execution_that_hang
   EXPECT_EQ(report.error, std::nullopt);
 }
 
+TEST(ProofInWorkers, that_is_stopped_tells_a_failure_that_was_found_in_a_later_part) {
+  const auto body = [](World& world) {
+    const bool fails = world.choose("fails", 2) == 1;
+    if (!fails) return last_zero(14).body(world);
+    world.run();
+    world.require(!fails, "failed");
+  };
+  const ProveReport report =
+      prove(body, 2, {}, {}, [calls = 0](const ProveReport&) mutable { return ++calls < 4; });
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "failed");
+}
+
 INSTANTIATE_TEST_SUITE_P(Jobs, ProveInWorkers, testing::Values(1U, 2U, 3U),
                          [](const auto& jobs) { return fmt::format("{}", jobs.param); });
 
