@@ -108,7 +108,7 @@ TEST_F(CommandLineTest, what_a_proof_covers_does_not_depend_on_the_number_of_job
   for (const std::string scenario :
        {"paper/three-requests", "paper/h05b-refused-yet-executed", "paper/h09-late-emulator-corrected",
         "races/o07-lost-token-corrected", "races/weak-seqlock-even-store-corrected",
-        "races/stale-answer-modulo-8-corrected", "paper/three-requests --preemptions 1 --silences 1"}) {
+        "paper/three-requests --preemptions 1 --silences 1"}) {
     const std::string whole = coverage_of(ltsim("prove --out . " + scenario));
     EXPECT_EQ(whole.find("  all "), 0U) << whole;
     for (const std::string jobs : {" --jobs 2", " --jobs 3"})

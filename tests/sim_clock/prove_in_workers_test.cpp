@@ -7,6 +7,7 @@
 #include <csignal>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -179,6 +180,18 @@ TEST_P(ProveInWorkers, who_asks_to_stop_does_not_wait_for_an_execution_that_hang
       prove(body, GetParam(), {}, {}, [calls = 0](const ProveReport&) mutable { return ++calls < 3; });
   EXPECT_FALSE(report.complete);
   EXPECT_EQ(report.error, std::nullopt);
+}
+
+TEST(ProofInWorkers, initialises_on_first_use_before_it_writes_a_failure_down) {
+  const auto body = [](World& world) {
+    static bool is_initialised = false;
+    if (!std::exchange(is_initialised, true)) static_cast<void>(world.choose("at first", 3));
+    lost_update(world);
+  };
+  const ProveReport report = prove(body, 2);  // the first one in this process
+  EXPECT_EQ(as_text(report), as_text(prove_alone(body)));
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "an update is lost");
 }
 
 TEST(ProofInWorkers, that_is_stopped_tells_a_failure_that_was_found_in_a_later_part) {
