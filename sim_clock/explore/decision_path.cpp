@@ -34,8 +34,11 @@ void DecisionPath::note_that_runs_differ() {
       at_ + 1);
 }
 
+void DecisionPath::end_execution() {
+  if (!is_at_end()) note_that_runs_differ();
+}
+
 bool DecisionPath::advance() {
-  if (at_ < decisions_.size()) note_that_runs_differ();
   if (!trouble_.empty()) return false;
   while (!decisions_.empty()) {
     Decision& last = decisions_.back();

@@ -43,7 +43,9 @@ class DecisionPath {
   [[nodiscard]] std::uint32_t count_so_far() const noexcept { return static_cast<std::uint32_t>(at_); }
   [[nodiscard]] Decision& operator[](std::size_t index) noexcept { return decisions_[index]; }
 
-  /// After an execution: on to the next one. @return false: that was the last
+  /// One that ends before it has come to all of them is trouble().
+  void end_execution();
+  /// After that: on to the next execution. @return false: that was the last
   [[nodiscard]] bool advance();
   /// Of the next execution: so many of its steps are those of the last one.
   [[nodiscard]] std::uint32_t steps_in_common() const noexcept { return steps_in_common_; }

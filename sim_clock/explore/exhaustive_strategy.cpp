@@ -348,9 +348,10 @@ void ExhaustiveStrategy::wake_sleepers(const Step& step) noexcept {
 }
 
 bool ExhaustiveStrategy::advance() {
+  path_.end_execution();
   if (!trouble().empty()) return false;
   if (is_reduced()) steps_.find(path_);
-  return path_.advance() && trouble().empty();
+  return path_.advance();
 }
 
 }  // namespace ltsim

@@ -93,12 +93,12 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
 
 std::string describe_bounds(const ProveOptions& options) {
   const ProofBounds& bounds = options.bounds;
-  const auto of_bound = [](const std::optional<unsigned>& bound, const char* what) {
-    return bound ? "at most " + counted(*bound, what) : fmt::format("any number of {}s", what);
-  };
+  const std::string preemptions = bounds.preemptions ? "at most " + counted(*bounds.preemptions, "preemption")
+                                                     : std::string{"any number of preemptions"};
+  std::string silences = "any number of silences";
+  if (bounds.silences) silences = *bounds.silences == 0 ? "no silence" : counted(*bounds.silences, "silence");
   const bool is_reduced = !bounds.preemptions && !bounds.states;
-  return fmt::format("{} and {}{}, memory {}", of_bound(bounds.preemptions, "preemption"),
-                     bounds.silences == 0U ? std::string{"no silence"} : of_bound(bounds.silences, "silence"),
+  return fmt::format("{} and {}{}, memory {}", preemptions, silences,
                      is_reduced ? ", one of each order that makes a difference" : "",
                      to_string(options.memory));
 }

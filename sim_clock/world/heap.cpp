@@ -45,6 +45,7 @@ void Heap::begin(Task* const& running) noexcept {
 
 void Heap::end() noexcept {
   is_on_ = false;
+  running_ = nullptr;
   count_ = 0;
 }
 
@@ -57,6 +58,8 @@ const Heap::Block* Heap::find(std::uintptr_t address) noexcept {
 }
 
 void Heap::allocated(const void* begin, std::size_t bytes) noexcept {
+  bytes = std::max(bytes, std::size_t{1});
+  forget_freed(number_of(begin), bytes);
   if (count_ == blocks_max) {
     overflowed_ = true;
     return;
@@ -65,21 +68,40 @@ void Heap::allocated(const void* begin, std::size_t bytes) noexcept {
   const std::size_t index = index_of(blocks(), number_of(begin));
   std::memmove(blocks_ + index + 1, blocks_ + index, (count_ - index) * sizeof(Block));
   blocks_[index] = {.begin = number_of(begin),
-                    .bytes = std::max(bytes, std::size_t{1}),
-                    .name = std::uint64_t{owner} << 32U | ++allocated_by_[owner]};
+                    .bytes = bytes,
+                    .name = std::uint64_t{owner} << 32U | ++allocated_by_[owner],
+                    .is_freed = false};
   ++count_;
 }
 
-void Heap::freed(const void* begin) noexcept {
+void Heap::allocated_by_others(const void* begin, std::size_t bytes) noexcept {
+  forget_freed(number_of(begin), bytes);
+}
+
+void Heap::forget_freed(std::uintptr_t begin, std::size_t bytes) noexcept {
+  std::size_t first = index_of(blocks(), begin);
+  if (first != 0 && blocks_[first - 1].begin + blocks_[first - 1].bytes > begin) --first;
+  std::size_t end = first;
+  while (end != count_ && blocks_[end].begin < begin + bytes) ++end;
+  if (first == end) return;
+  std::memmove(blocks_ + first, blocks_ + end, (count_ - end) * sizeof(Block));
+  count_ -= end - first;
+}
+
+Heap::Block* Heap::block_at(const void* begin) noexcept {
   const std::size_t index = index_of(blocks(), number_of(begin));
-  if (index == count_ || blocks_[index].begin != number_of(begin)) return;
-  --count_;
-  std::memmove(blocks_ + index, blocks_ + index + 1, (count_ - index) * sizeof(Block));
+  const bool is_there =
+      index != count_ && blocks_[index].begin == number_of(begin) && !blocks_[index].is_freed;
+  return is_there ? &blocks_[index] : nullptr;
+}
+
+void Heap::freed(const void* begin) noexcept {
+  if (Block* const block = block_at(begin); block != nullptr) block->is_freed = true;
 }
 
 std::size_t Heap::bytes_of(const void* begin) noexcept {
-  const std::size_t index = index_of(blocks(), number_of(begin));
-  return index == count_ || blocks_[index].begin != number_of(begin) ? 0 : blocks_[index].bytes;
+  const Block* const block = block_at(begin);
+  return block == nullptr ? 0 : block->bytes;
 }
 
 }  // namespace ltsim

@@ -75,6 +75,7 @@ std::uint64_t WholeState::hash() {
   // Where they lie does not matter, nor which lies before which.
   std::uint64_t blocks = 0;
   for (const Heap::Block& block : Heap::blocks()) {
+    if (block.is_freed) continue;
     StateHash of_block{world_.execution_number()};
     of_block.add(block.name);
     of_block.add(block.bytes);
@@ -113,7 +114,9 @@ void WholeState::check_write(std::uintptr_t address) noexcept {
   const Task* const running = scheduler.running();
   if (running == nullptr || running->storage->contains(address)) return;
   const auto all = variables();
-  if (address - number_of(all.data()) < all.size() || Heap::find(address) != nullptr) return;
+  if (address - number_of(all.data()) < all.size()) return;
+  const Heap::Block* const block = Heap::find(address);
+  if (block != nullptr && !block->is_freed) return;
   if (Segments::contains(reinterpret_cast<const void*>(address))) return;
   if (address >= number_of(scheduler.main_stack_pointer()) && address < stack_end_) return;
   for (std::size_t i = 0; i < scheduler.tasks_count(); ++i) {

@@ -7,8 +7,9 @@
 // Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. So do
 // weak memory, whose histories do not go in, and one processor.
 //
-// What does not go in, since it decides nothing: how many steps were taken; and what the race detector remembers. A race that shows
-// only on one of two ways into the same state may go unseen.
+// What does not go in: how many steps were taken, which decides nothing; what the race detector remembers, so a race that shows only
+// on one of two ways into the same state may go unseen; and which address the heap gives out next, so code that compares the address
+// of a freed block with that of another one in its place may go unseen.
 //
 // Words that the code does not need any more stay on stacks and in registers. They make two states of one, never one of two. The
 // stack below a task that stands still is filled with zeros, so there are few.

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <ostream>
 #include <string>
@@ -227,6 +228,112 @@ TEST_F(ProverTest, without_a_bound_orders_that_make_no_difference_are_one) {
   EXPECT_EQ(prove([](World& world) { two_counters_of_their_own(world, 3); }).executions, 1U);
 }
 
+TEST(SeenStatesTest, what_was_asleep_each_time_is_left_and_all_else_is_done) {
+  SeenStates seen;
+  constexpr TaskBits one = task_bit(0);
+  constexpr TaskBits two = task_bit(1);
+  EXPECT_EQ(seen.visit(1, one | two), 0U);
+  EXPECT_EQ(seen.visit(2, 0), 0U);
+  EXPECT_EQ(seen.visit(1, one), ~(one | two));  // now `two` is to be tried
+  EXPECT_EQ(seen.visit(1, two), ~one);          // now `one`
+  EXPECT_EQ(seen.visit(1, 0), ~TaskBits{0});
+  for (std::uint64_t hash = 3; hash < 5000; ++hash) EXPECT_EQ(seen.visit(hash, 0), 0U);
+  EXPECT_EQ(seen.visit(1, 0), ~TaskBits{0});
+  EXPECT_EQ(seen.size(), 4999U);
+}
+
+ProveOptions by_states() {
+  ProveOptions options;
+  options.bounds = {.preemptions = {}, .silences = 0U, .states = true};
+  return options;
+}
+
+/// What is left of the way into a state, on stacks, in registers, in freed memory, does not make another state of it.
+TEST_F(ProverTest, states_are_as_few_as_they_are) {
+  constexpr std::uint32_t steps = 12;
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        start_tasks(of, 2, [&](std::uint32_t) {
+          for (std::uint32_t k = 0; k < steps; ++k) {
+            // Blocks of the heap lie elsewhere in each execution.
+            auto counter = std::make_unique<std::vector<std::uint32_t>>(k + 1, 0U);
+            counter->back() = word.fetch_xor(1);
+          }
+        });
+        of.run();
+        of.require(word.load() == 0, "an update is lost");
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.error, std::nullopt);
+  // How far each is, and what it has found last; of the 2.7 million ways there.
+  EXPECT_GE(report.states, (steps - 1) * (steps - 1));
+  EXPECT_LE(report.states, 4 * (steps + 1) * (steps + 1));
+}
+
+TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_told_apart) {
+  // Both tasks end in the same state whoever was first; only the check knows.
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        std::vector<std::uint32_t> order;
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          word.store(0);
+          order.push_back(i);
+        });
+        of.run();
+        of.require(order.front() == 0, "task-1 was first");
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "task-1 was first");
+}
+
+TEST_F(ProverTest, a_task_that_polls_is_no_way_without_end_where_states_are_told_apart) {
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          if (i == 1) {
+            word.store(1);
+          } else {
+            while (word.load() == 0) {
+            }
+          }
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.cut_off, 0U);
+  EXPECT_EQ(report.held_back, 0U);
+  EXPECT_LT(report.states, 20U);
+}
+
+TEST_F(ProverTest, memory_that_is_no_part_of_the_state_is_refused) {
+  const auto elsewhere = std::make_unique<std::uint32_t>(0);
+  const ProveReport report = prove(
+      [&](World& of) {
+        Word word{0};
+        *elsewhere = 0;
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          word.store(i);
+          *elsewhere += i;
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_NE(report.error.value_or("").find("memory that does not belong"), std::string::npos);
+}
+
+TEST_F(ProverTest, states_of_weak_memory_are_refused) {
+  ProveOptions options = by_states();
+  options.memory = Memory::c11;
+  const ProveReport report = prove([](World& of) { two_counters_of_their_own(of, 2); }, options);
+  EXPECT_NE(report.error.value_or("").find("memory sc only"), std::string::npos);
+}
+
 TEST_F(ProverTest, the_first_failure_ends_the_search_and_can_be_replayed) {
   const auto lost_update = [](World& of) {
     Word word{0};
@@ -344,6 +451,12 @@ TEST_F(ProverTest, says_what_was_covered_and_no_more) {
             "them a task that polled "
             "waited for a change after 4 looks");
   report.held_back = 0;
+  report.states = 300;
+  options.bounds = {.preemptions = {}, .silences = std::nullopt, .states = true};
+  options.memory = Memory::sc;
+  EXPECT_EQ(describe_coverage(report, options),
+            "all 300 states in 18432 executions with any number of preemptions and any number of silences, "
+            "memory sc; 0 cut off");
   report.complete = false;
   report.executions = 1;
   options = {};
