@@ -277,6 +277,10 @@ TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_a
   compare_with_states(std::nullopt, 4);
 }
 
+TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_apart_within_one_silence) {
+  compare_with_states(1, 6);
+}
+
 /// Tasks that hardly remember anything, so that many ways lead to one state.
 TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_many_ways_lead_to_one_state) {
   constexpr unsigned programs_count = 100;
