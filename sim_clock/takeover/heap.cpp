@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "sim_clock/world/heap.hpp"
+#include "sim_clock/world/wipe_stack.hpp"
 
 // Exported by glibc for those who stand in front of malloc.
 extern "C" void* __libc_malloc(std::size_t bytes);
@@ -23,11 +24,17 @@ using ltsim::Heap;
   if (block == nullptr) return nullptr;
   if (!Heap::is_on()) {
     Heap::allocated_by_others(block, bytes);
-    return block;
+    return block;  // nobody's stack is looked at where nothing is entered
   }
   std::memset(block, 0, bytes);
   Heap::allocated(block, bytes);
+  ltsim::wipe_stack<ltsim::stack_bytes_of_ours>();
   return block;
+}
+
+[[gnu::noinline]] void left(void* block) noexcept {
+  Heap::freed(block);
+  ltsim::wipe_stack<ltsim::stack_bytes_of_ours>();
 }
 
 [[gnu::noinline]] void* entered_again(void* block, std::size_t bytes) noexcept {
@@ -35,7 +42,7 @@ using ltsim::Heap;
   void* const other = entered(__libc_malloc(bytes), bytes);
   if (other == nullptr) return nullptr;
   std::memcpy(other, block, before < bytes ? before : bytes);
-  Heap::freed(block);
+  left(block);
   __libc_free(block);
   return other;
 }
@@ -63,7 +70,7 @@ extern "C" void* realloc(void* block, std::size_t bytes) {
     return entered(__libc_malloc(bytes), bytes);
   if (Heap::is_listing() && Heap::bytes_of(block) != 0) [[unlikely]] {
     if (bytes != 0) return entered_again(block, bytes);
-    Heap::freed(block);
+    left(block);
   }
   void* const other = __libc_realloc(block, bytes);
   if (Heap::is_listing() && other != nullptr) [[unlikely]]
@@ -73,7 +80,7 @@ extern "C" void* realloc(void* block, std::size_t bytes) {
 
 extern "C" void free(void* block) {
   if (Heap::is_listing()) [[unlikely]]
-    Heap::freed(block);
+    left(block);
   __libc_free(block);
 }
 

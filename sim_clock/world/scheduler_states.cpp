@@ -29,7 +29,7 @@ void Scheduler::run_decider(void* scheduler) noexcept {
   auto& self = *static_cast<Scheduler*>(scheduler);
   for (;;) {
     const Task& stands = *self.running_;
-    stands.storage->clean_stack_below(stands.context.stack_pointer());
+    stands.storage->clean_stack_below(stands.context.stack_pointer(), cleaned_at_each_stop);
     std::size_t chosen = 0;
     {
       const Heap::Pause pause;

@@ -43,11 +43,12 @@ class WholeState {
 
   /// Code under test, or a check of the scenario, is about to write there.
   static void written(const volatile void* address) noexcept {
-    if (active_ != nullptr) active_->check_write(reinterpret_cast<std::uintptr_t>(address));
+    if (active_ != nullptr) active_->written_elsewhere(reinterpret_cast<std::uintptr_t>(address));
   }
 
  private:
   [[gnu::noinline]] void run_from_here(const std::function<void(World&)>& scenario);
+  void written_elsewhere(std::uintptr_t address) noexcept;
   void check_write(std::uintptr_t address) noexcept;
   void add_variables(StateHash& hash) const noexcept;
 
