@@ -132,13 +132,8 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
   for (;;) {
     const StateWord found = look();
     switch (found.phase) {
-      case Phase::response: {
-        observer().accepted();
-        const auto message = read_area(layout().response, message_);
-        // A slave that attaches meanwhile leaves the answer, in its own generation: it is read once more.
-        if (!move(found, found.in(Phase::idle), options().orders.free)) break;
-        return {.result = judge(message, found, into)};
-      }
+      case Phase::response:
+        return {.result = accept(found, into)};
       case Phase::idle:
       case Phase::down:
         return dropped;
@@ -170,6 +165,19 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
         return unknown;
     }
   }
+}
+
+CallResult Master::accept(StateWord found, std::span<std::byte> into) noexcept {
+  observer().accepted();
+  const auto message = read_area(layout().response, message_);
+  while (!move(found, found.in(Phase::idle), options().orders.free)) {
+    // A slave that attaches meanwhile leaves the answer as it is, in its own generation. The copy stands: to read the
+    // area once more would be to load its length twice.
+    found = look();
+    if (found.phase != Phase::response)
+      return {.outcome = ExchangeOutcome::unknown};  // only a foreign writer
+  }
+  return judge(message, found, into);
 }
 
 CallResult Master::judge(const std::optional<std::span<const std::byte>>& message, const StateWord& word,

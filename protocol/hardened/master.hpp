@@ -104,6 +104,9 @@ class Master final : public Endpoint, public ExchangeMaster {
   Attempt await(std::span<std::byte> into) noexcept;
   /// Steps 5 and 6.
   CallResult finish(std::span<std::byte> into) noexcept;
+  /// The end of step 5: copies the answer, frees the areas.
+  /// @param found  RESPONSE
+  [[nodiscard]] CallResult accept(StateWord found, std::span<std::byte> into) noexcept;
   /// What a response that was read says of the request.
   [[nodiscard]] CallResult judge(const std::optional<std::span<const std::byte>>& message,
                                  const StateWord& word, std::span<std::byte> into) noexcept;

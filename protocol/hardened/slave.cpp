@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "protocol/check.hpp"
+
 namespace protocol::hardened {
 
 Slave::Slave(std::string segment_name, const Options& options, ExchangeObserver* observer)
@@ -39,6 +41,7 @@ void Slave::close() noexcept {
 bool Slave::is_open() const noexcept { return has_objects(); }
 
 bool Slave::wait_for_request() noexcept {
+  PLC_CHECK(is_open());
   while (!stop_requested_.load()) {
     request_bell().wait();
     if (stop_requested_.load()) {
