@@ -56,7 +56,7 @@ class ExchangeSlave {
   [[nodiscard]] virtual std::span<const std::byte> read_request() noexcept = 0;
   virtual void write_response(std::span<const std::byte> response) noexcept = 0;
 
-  /// Lets wait_for_request() return false, now and for good. From any thread; async-signal-safe.
+  /// Lets wait_for_request() return false, now and for good. Of an open side, from any thread; async-signal-safe.
   virtual void request_stop() noexcept = 0;
 
  protected:

@@ -62,7 +62,6 @@ Endpoint::Endpoint(std::string segment_name, const Options& options, ExchangeObs
 tl::expected<void, SharedMemoryError> Endpoint::open_objects() noexcept {
   if (const auto taken = roles_.take(side_, deadline_after(options_.open_timeout)); !taken) return taken;
   const auto opened = make_or_open();
-  roles_.made();
   if (!opened) close_objects();
   return opened;
 }
@@ -102,6 +101,7 @@ void Endpoint::attach(StateWord (*after)(const StateWord&) noexcept) noexcept {
     if (next == found || move(found, next, options_.orders.attach)) break;
   }
   observer().attached();
+  roles_.made();
 }
 
 bool Endpoint::move(const StateWord& from, const StateWord& to, std::memory_order order, bool rule) noexcept {

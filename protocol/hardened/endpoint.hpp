@@ -50,14 +50,15 @@ class Endpoint {
   Endpoint(std::string segment_name, const Options& options, ExchangeObserver* observer, Side side);
   ~Endpoint() = default;
 
-  /// Takes the role and opens the named objects, which it makes where they are missing. The state word is not touched.
+  /// Takes the role and opens the named objects, which it makes where they are missing. Nobody else opens, or attaches,
+  /// until attach(): who attaches later has seen every attach before. The state word is not touched.
   [[nodiscard]] tl::expected<void, SharedMemoryError> open_objects() noexcept;
   void close_objects() noexcept;
   [[nodiscard]] bool has_objects() const noexcept { return cell_.has_value(); }
 
   // All of these need the objects.
 
-  /// Puts the state word that an attach makes of the present one in its place.
+  /// The end of opening. Puts the state word that an attach makes of the present one in its place.
   /// @param after  after_slave_attach or after_master_attach
   void attach(StateWord (*after)(const StateWord&) noexcept) noexcept;
 

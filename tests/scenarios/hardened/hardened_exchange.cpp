@@ -82,9 +82,10 @@ class HardenedSides {
     MirrorPlc plc;
     hardened::Slave slave{segment, options_, &monitor_};
     emulator_models::EmulatorHandler handler{slave, plc};
+    if (!slave.open()) return cannot_open();
     handler_ = &handler;
     serving_life_ = emulator_.incarnation();
-    if (!slave.open()) return cannot_open();
+    if (stopped_) return;
     emulator_is_up_ = true;
     handler.run();
     handler_ = nullptr;
