@@ -138,9 +138,14 @@ void run_hardened_exchange(ltsim::World& world, const HardenedExchange& exchange
   };
   length_is_loaded_once(layout.request, "segment.request-length");
   length_is_loaded_once(layout.response, "segment.response-length");
-  // I10. The operator's stop is one more ring.
-  world.bound_semaphore(std::string{segment} + ".request", 2);
-  world.bound_semaphore(std::string{segment} + ".response", 2 + 1 + exchange.emulator_kills);
+  // I10, with the ring of the operator's stop, and of the emulator's first attach.
+  world.bound_semaphore(std::string{segment} + ".request", 1 + 1 + exchange.odd_rings);
+  world.bound_semaphore(std::string{segment} + ".response",
+                        2 + 1 + exchange.emulator_kills + exchange.odd_rings);
+  if (exchange.odd_rings != 0) {
+    world.grant(ltsim::FaultKind::doubled_post, exchange.odd_rings);
+    world.grant(ltsim::FaultKind::interrupt, exchange.odd_rings);
+  }
   // What races where a rule is missing is known; what comes of it is looked for.
   if (!exchange.only.empty()) world.allow_data_races();
   if (exchange.word != 0) leave_word(world, exchange.word, layout.size_bytes);

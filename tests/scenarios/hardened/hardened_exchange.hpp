@@ -20,6 +20,7 @@ struct HardenedExchange {
   unsigned requests = 1;                     ///< of each life of the kernel, one after the other
   unsigned kernel_kills = 0;                 ///< at any step, and started again 5 ms later
   unsigned emulator_kills = 0;
+  unsigned odd_rings = 0;  ///< so many posts count twice, and so many waits end by a signal
   /// The state word that a former life has left; 0: a fresh segment.
   std::uint32_t word = 0;
   std::string_view only = {};  ///< the invariant to judge by, data races aside; empty: all

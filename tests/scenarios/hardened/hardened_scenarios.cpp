@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "protocol/hardened/state_word.hpp"
 #include "sim_clock/scenario/shape.hpp"
 #include "tests/scenarios/hardened/hardened_exchange.hpp"
 
@@ -14,7 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using protocol::hardened::Options;
+using protocol::hardened::Phase;
 using protocol::hardened::Rules;
+using protocol::hardened::StateWord;
 using scenarios::HardenedExchange;
 using scenarios::run_hardened_exchange;
 constexpr auto never = HardenedExchange::TimeOuts::never;
@@ -55,6 +58,22 @@ constexpr std::array set_ups{
     SetUp{"hardened/emulator-twice-kernel-once",
           "one request a session, time-outs; the emulator is killed twice, the kernel once",
           {.requests = 1, .kernel_kills = 1, .emulator_kills = 2}},
+    SetUp{"hardened/odd-rings",
+          "two requests, time-outs; posts count twice, waits end by a signal",
+          {.requests = 2, .odd_rings = 3}},
+    SetUp{"hardened/wraps",
+          "generation and sequence begin just before they wrap; time-outs; each side is killed once",
+          {.options = {.first_sequence = 0xFFFF},
+           .requests = 2,
+           .kernel_kills = 1,
+           .emulator_kills = 1,
+           .word = encode(StateWord{Phase::down, StateWord::generation_max - 1, 0xFFFE})}},
+    SetUp{"hardened/what-was-left",
+          "a former emulator has died with a request in its hands; time-outs; each side is killed once",
+          {.requests = 1,
+           .kernel_kills = 1,
+           .emulator_kills = 1,
+           .word = encode(StateWord{Phase::busy, 7, 7})}},
 };
 
 template <std::size_t index>
@@ -173,6 +192,13 @@ bool register_mutants(std::index_sequence<indexes...>) {
 }
 
 const bool registered = register_set_ups(std::make_index_sequence<set_ups.size()>{}) &&
-                        register_mutants(std::make_index_sequence<mutants.size()>{});
+                            register_mutants(std::make_index_sequence<mutants.size()>{});
 
 }  // namespace
+
+SCENARIO("hardened/m9-read-before-taken",
+         "no rule is needed for it while sequences differ: the request is copied before it is taken") {
+  // The copy may race with the next request; then the swap fails, and it is not looked at.
+  world.allow_data_races();
+  run_hardened_exchange(world, {.options = without(&Rules::take_before_read), .requests = 2});
+}
