@@ -48,6 +48,8 @@ struct Plan {
   Options options;
   nanoseconds execution_time{0};
   nanoseconds emulator_sleeps_first{0};  // between opening and serving
+  nanoseconds emulator_sleeps_after{0};  // each answer
+  ExchangeObserver* listens_to_master = nullptr;
   std::string_view killed = {};
   std::vector<std::string> asked{"A"};
 };
@@ -73,6 +75,7 @@ void run_emulator() {
     play.executed.push_back(request);
     std::this_thread::sleep_for(plan.execution_time);
     slave.write_response(bytes("to " + request));
+    std::this_thread::sleep_for(plan.emulator_sleeps_after);
   }
 }
 
@@ -90,7 +93,7 @@ void ask(Master& master, const std::string& request) {
 /// Asks, and then stops the emulator with a request that has time to spare. In its second life the kernel asks for "B".
 void run_kernel(unsigned life) {
   while (play.slaves_count == 0) std::this_thread::sleep_for(1ms);
-  Master master{segment, plan.options};
+  Master master{segment, plan.options, plan.listens_to_master};
   if (!master.open()) return;
   std::this_thread::sleep_for(20ms);
   const std::vector<std::string> asked = life == 1 ? plan.asked : std::vector<std::string>{"B"};
@@ -188,6 +191,65 @@ TEST_P(HardenedTimeOut, bounds_a_query_as_well) {
   EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(110ms), Lt(110ms + slack))));
 }
 
+TEST_P(HardenedTimeOut, of_a_query_leaves_the_outcome_unknown) {
+  plan.options.take_timeout = 30ms;
+  plan.options.answer_timeout = 50ms;
+  plan.execution_time = 100ms;
+  plan.emulator_sleeps_after = 1min;
+  run_undisturbed();
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  // The query is published at 100 ms and withdrawn at 110 ms; the request was executed.
+  EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(110ms), Lt(110ms + slack))));
+  EXPECT_THAT(play.executed, ElementsAre("A"));
+}
+
+TEST_P(HardenedTimeOut, of_a_query_leaves_room_for_another) {
+  plan.options.take_timeout = 30ms;
+  plan.options.answer_timeout = 50ms;
+  plan.options.queries_max = 2;
+  plan.execution_time = 100ms;
+  plan.emulator_sleeps_after = 15ms;
+  run_undisturbed();
+  EXPECT_THAT(play.outcomes, ElementsAre("ok: to A"));
+  EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(115ms), Lt(117ms))));
+  EXPECT_THAT(play.executed, ElementsAre("A"));
+}
+
+/// Writes into the request area after the second publication, as nobody should.
+class DamagesTheQuery final : public ExchangeObserver {
+ public:
+  void published() noexcept override {
+    if (++published_count_ != 2) return;
+    NamedMemory memory;
+    const std::size_t size_bytes = segment_layout(header_bytes + plan.options.request_bytes_max,
+                                                  header_bytes + plan.options.response_bytes_max)
+                                       .size_bytes;
+    ASSERT_FALSE(memory.open(segment, size_bytes));
+    static_cast<std::byte*>(memory.region.get_address())[8 + header_bytes] = std::byte{'B'};
+  }
+  void submitted(std::span<const std::byte> /*request*/) noexcept override { published_count_ = 0; }
+
+ private:
+  unsigned published_count_ = 0;
+};
+
+TEST_P(HardenedTimeOut, leaves_a_query_whose_rejection_says_nothing_of_the_request) {
+  DamagesTheQuery damages;
+  plan.options.take_timeout = 30ms;
+  plan.options.answer_timeout = 50ms;
+  plan.execution_time = 100ms;
+  plan.listens_to_master = &damages;
+  EXPECT_EQ(run_with(
+                {},
+                +[](World& world) {
+                  world.allow_data_races();
+                  run_play(world);
+                }),
+            ltsim::Outcome{});
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.executed, ElementsAre("A"));
+}
+
 TEST_P(HardenedTimeOut, makes_the_next_request_wait_until_the_slave_has_dropped_the_last_one) {
   plan.options.queries_max = 0;
   plan.options.answer_timeout = 0ms;
@@ -233,6 +295,38 @@ INSTANTIATE_TEST_SUITE_P(Doorbells, HardenedTimeOut,
                          [](const auto& tested) {
                            return tested.param == Options::Doorbells::two ? "two" : "one";
                          });
+
+// --- the named objects ---
+
+class HardenedObjects : public HardenedWorld {};
+
+TEST_F(HardenedObjects, are_the_same_for_both_sides_whoever_removes_them_meanwhile) {  // I29
+  for (std::uint64_t seed = 1; seed <= 3'000; ++seed) {
+    play = {};
+    ltsim::RandomStrategy strategy;
+    const ltsim::Outcome outcome = run_under(strategy, seed, [](World& world) {
+      plan.options.open_timeout = plan.options.take_timeout = plan.options.answer_timeout = 1h;
+      world.process("operator").start("main", [] {
+        for (int i = 0; i < 3; ++i) static_cast<void>(remove_segment(segment, plan.options));
+      });
+      // The operator plays both roles for a moment.
+      world.process("kernel").start("main", [] {
+        Master master{segment, plan.options};
+        while (!master.open()) std::this_thread::sleep_for(1ms);
+        for (std::array<std::byte, 16> answer{};
+             master.call(bytes("A"), answer).outcome != ExchangeOutcome::ok;)
+          std::this_thread::sleep_for(1ms);
+      });
+      world.process("emulator").start("main", [] {
+        Slave slave{segment, plan.options};
+        while (!slave.open()) std::this_thread::sleep_for(1ms);
+        if (!slave.wait_for_request()) return;
+        slave.write_response(slave.read_request());
+      });
+    });
+    ASSERT_EQ(outcome, ltsim::Outcome{}) << seed;
+  }
+}
 
 // --- the kill table: the emulator ---
 
