@@ -62,7 +62,10 @@ class Endpoint {
   /// @param after  after_slave_attach or after_master_attach
   void attach(StateWord (*after)(const StateWord&) noexcept) noexcept;
 
-  [[nodiscard]] StateWord look() const noexcept { return cell_->load(options_.orders.look); }
+  /// For a swap, which finds out whether it still holds.
+  [[nodiscard]] StateWord look() const noexcept { return cell_->load(std::memory_order_relaxed); }
+  /// For the use of an area that it says is one's own.
+  [[nodiscard]] StateWord look_before_use() const noexcept { return cell_->load(options_.orders.look); }
   /// @param rule  that this is a swap; without it, a store
   /// @return whether `from` was still there
   bool move(const StateWord& from, const StateWord& to, std::memory_order order, bool rule = true) noexcept;

@@ -55,7 +55,7 @@ tl::expected<void, SharedMemoryError> Master::write(std::span<const std::byte> r
   give_up_at_once();
   observer().submitted(request);
   request_.assign(request.begin(), request.end());
-  ++sequence_;
+  if (options().rules.sequence_advances) ++sequence_;
   exchange_.emplace();
   const Published published = publish(false);
   if (published == Published::yes) return {};
@@ -77,7 +77,7 @@ Master::Published Master::publish(bool is_query) noexcept {
   exchange_->take_by = deadline_after(take_timeout_);
   exchange_->answer_by = deadline_after(answer_timeout_, exchange_->take_by);
   for (;;) {
-    StateWord found = look();
+    StateWord found = look_before_use();
     if (found.phase == Phase::raw || found.phase == Phase::down) return Published::no_slave;
     if (found.phase == Phase::lost && move(found, found.in(Phase::idle), hands_nothing_over)) continue;
     if (found.phase != Phase::idle) {
@@ -130,7 +130,7 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
   const Attempt dropped = is_query ? unknown : Attempt{.result = {.outcome = ExchangeOutcome::not_executed}};
   const Attempt withdrawn = is_query ? in_doubt : dropped;
   for (;;) {
-    const StateWord found = look();
+    const StateWord found = look_before_use();
     switch (found.phase) {
       case Phase::response:
         return {.result = accept(found, into)};
@@ -170,7 +170,7 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
 CallResult Master::accept(StateWord found, std::span<std::byte> into) noexcept {
   observer().accepted();
   const auto message = read_area(layout().response, message_);
-  while (!move(found, found.in(Phase::idle), options().orders.free)) {
+  while (!move(found, found.in(Phase::idle), hands_nothing_over)) {
     // A slave that attaches meanwhile leaves the answer as it is, in its own generation. The copy stands: to read the
     // area once more would be to load its length twice.
     found = look();

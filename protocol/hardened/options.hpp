@@ -22,22 +22,22 @@ struct Rules {
       true;                         ///< M7: the swap that publishes a query tests the generation itself
   bool empties_before_look = true;  ///< M8: a slave's attach empties its doorbell, then looks at the word
   bool take_before_read = true;     ///< M9: the request area is read after the request was taken
+  bool sequence_advances = true;    ///< M9 with one sequence: each request has another number than the last
 };
 
-/// The memory order of each access to the state word. What is said of none of them is in state_cell.hpp.
+/// The memory orders that hand an area over. Each is needed: relaxed, it is a data race (README.md). All other accesses to
+/// the state word are relaxed (state_cell.hpp).
 struct Orders {
-  /// Each look: whoever reads an area, or fills it anew, comes after who handed it over.
+  /// The master's look at RESPONSE, IDLE or LOST, before it reads an area or fills one: the slave has done with it.
   std::memory_order look = std::memory_order_acquire;
   /// IDLE to REQUEST: the request area is filled before.
   std::memory_order publish = std::memory_order_release;
-  /// REQUEST to BUSY: the slave reads what this publication, and none before it, has filled.
+  /// REQUEST to BUSY: the slave reads what the publication has filled.
   std::memory_order take = std::memory_order_acquire;
   /// BUSY to RESPONSE: the response area is filled before.
   std::memory_order answer = std::memory_order_release;
   /// ORPHAN to IDLE: the slave has read the request before the master fills the area again.
   std::memory_order drop = std::memory_order_release;
-  /// RESPONSE to IDLE: the master has read the response before a later slave fills the area again.
-  std::memory_order free = std::memory_order_release;
   /// Any attach: what the predecessor did, which comes before by the lock of its role, comes before for the other side.
   std::memory_order attach = std::memory_order_release;
 };

@@ -1,8 +1,12 @@
 // The state word in shared memory: one lock-free atomic, loaded whole and changed whole.
 //
-// The orders that hand an area over are in Orders, with their reasons. A change that hands over nothing that was written
-// is relaxed: a withdrawal, a give-up, an acknowledgement, a stop. So is a swap that fails: nobody uses what it found,
-// who wants to know looks again. Nothing is sequentially consistent: no side ever leaves out a post because of what it
+// The orders that hand an area over are in Orders, with their reasons. Relaxed is
+//   a look that a swap follows: the swap finds out whether it still holds;
+//   a swap that fails: nobody uses what it found, who wants to know looks again;
+//   a withdrawal, a give-up, an acknowledgement, a stop: they hand over nothing that was written;
+//   RESPONSE to IDLE: who fills the response area next has taken a later request, whose publication comes after this in
+//   the same master; or in the next one, which comes after this one by the lock of the role.
+// Nothing is sequentially consistent: no side ever leaves out a post because of what it
 // has seen of the other, so no store need be seen before a later load (race O10).
 #pragma once
 

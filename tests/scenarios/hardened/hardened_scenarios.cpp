@@ -1,5 +1,6 @@
 // The scenarios of the hardened handoff: under time-outs and kills wherever they can strike no invariant breaks, with two
-// doorbells and with one; and the mutants, each of which lacks one rule of the protocol and is found by one invariant.
+// doorbells and with one; the mutants, each of which lacks a rule of the protocol and is found by one invariant; and, one
+// by one, the memory orders relaxed.
 
 #include <array>
 #include <chrono>
@@ -15,6 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using protocol::hardened::Options;
+using protocol::hardened::Orders;
 using protocol::hardened::Phase;
 using protocol::hardened::Rules;
 using protocol::hardened::StateWord;
@@ -107,6 +109,12 @@ constexpr Options without(bool Rules::* rule) {
   return options;
 }
 
+constexpr Options without(bool Rules::* rule, bool Rules::* other) {
+  Options options = without(rule);
+  options.rules.*other = false;
+  return options;
+}
+
 constexpr std::array mutants{
     Mutant{"hardened/m1-answer-stored",
            "a response is published by a store, and the kernel had given up",
@@ -156,7 +164,82 @@ constexpr std::array mutants{
            2,
            "first empty the doorbell, then look",
            {.options = without(&Rules::empties_before_look), .requests = 1, .emulator_kills = 1}},
+    Mutant{"hardened/m9-with-one-sequence",
+           "a request is copied before it is taken, and the next one has the same sequence number",
+           "I6",
+           3,
+           "first take, then copy",
+           {.options = without(&Rules::take_before_read, &Rules::sequence_advances), .requests = 2}},
 };
+
+constexpr Options relaxed(std::memory_order Orders::* order) {
+  Options options;
+  options.doorbells = Options::Doorbells::one;  // the second one would order memory as well
+  options.orders.*order = std::memory_order_relaxed;
+  return options;
+}
+
+constexpr std::array weaker{
+    Mutant{"hardened/relaxed-look",
+           "the kernel reads an answer after a look that orders nothing",
+           "data-race",
+           1,
+           "acquire: the answer was written before the word that says so",
+           {.options = relaxed(&Orders::look)}},
+    Mutant{"hardened/relaxed-publish",
+           "a request is published by a swap that orders nothing",
+           "data-race",
+           1,
+           "release: the request is written before the word that says so",
+           {.options = relaxed(&Orders::publish)}},
+    Mutant{"hardened/relaxed-take",
+           "a request is taken by a swap that orders nothing",
+           "data-race",
+           1,
+           "acquire: the request was written before the word that says so",
+           {.options = relaxed(&Orders::take)}},
+    Mutant{"hardened/relaxed-answer",
+           "an answer is published by a swap that orders nothing",
+           "data-race",
+           1,
+           "release: the answer is written before the word that says so",
+           {.options = relaxed(&Orders::answer)}},
+    Mutant{"hardened/relaxed-drop",
+           "a request that was given up is laid down by a swap that orders nothing",
+           "data-race",
+           2,
+           "release: the emulator has read the request before the kernel writes the next one",
+           {.options = relaxed(&Orders::drop)}},
+    Mutant{"hardened/relaxed-attach",
+           "an emulator attaches by a swap that orders nothing",
+           "data-race",
+           2,
+           "release: what the one before has read, it has read before the kernel writes the next request",
+           {.options = relaxed(&Orders::attach), .emulator_kills = 1}},
+};
+
+template <std::size_t index>
+void register_weaker() {
+  constexpr const Mutant& mutant = weaker[index];
+  static const std::string corrected_name = std::string{mutant.name} + "-corrected";
+  const ltsim::ShapeRegistration registration{
+      mutant.name,
+      corrected_name,
+      {.finding = mutant.finding, .depth = mutant.depth, .tasks_count = 2, .cure = mutant.cure},
+      mutant.description,
+      [](ltsim::World& world) { run_hardened_exchange(world, weaker[index].exchange); },
+      [](ltsim::World& world) {
+        HardenedExchange exchange = weaker[index].exchange;
+        exchange.options.orders = {};
+        run_hardened_exchange(world, exchange);
+      }};
+}
+
+template <std::size_t... indexes>
+bool register_all_weaker(std::index_sequence<indexes...>) {
+  (register_weaker<indexes>(), ...);
+  return true;
+}
 
 template <std::size_t index>
 void register_mutant() {
@@ -192,7 +275,8 @@ bool register_mutants(std::index_sequence<indexes...>) {
 }
 
 const bool registered = register_set_ups(std::make_index_sequence<set_ups.size()>{}) &&
-                            register_mutants(std::make_index_sequence<mutants.size()>{});
+                        register_mutants(std::make_index_sequence<mutants.size()>{}) &&
+                        register_all_weaker(std::make_index_sequence<weaker.size()>{});
 
 }  // namespace
 
