@@ -48,7 +48,8 @@ bool Slave::wait_for_request() noexcept {
       stop_ring_taken_ = true;
       return false;
     }
-    taken_ = look();
+    // Before the take nothing is read, so the take orders what is.
+    taken_ = options().rules.take_before_read ? look() : look_before_use();
     if (options().rules.phase_decides && taken_.phase != Phase::request) continue;
     if (!options().rules.take_before_read) read_ = read_area(layout().request, request_message_);
     const StateWord busy = taken_.in(Phase::busy);
