@@ -18,7 +18,7 @@ using scenarios::explore;
 class MutantTest : public testing::TestWithParam<ltsim::Shape> {};
 
 TEST_P(MutantTest, is_found_by_its_own_invariant_from_every_seed_and_with_its_rule_never) {
-  scenarios::expect_found_and_cured(GetParam(), {.executions_until_found_max = 40'000,
+  scenarios::expect_found_and_cured(GetParam(), {.executions_until_found_max = 400'000,
                                                  .silent_executions_min = 5'000,
                                                  .silent_executions_max = 30'000});
 }
