@@ -56,7 +56,7 @@ tl::expected<void, SharedMemoryError> Master::write(std::span<const std::byte> r
   observer().submitted(request);
   request_.assign(request.begin(), request.end());
   if (options().rules.sequence_advances) ++sequence_;
-  exchange_.emplace();
+  exchange_ = Exchange{};
   const Published published = publish(false);
   if (published == Published::yes) return {};
   end(ExchangeOutcome::not_executed);
