@@ -41,9 +41,11 @@ class WholeState {
   /// While every task stands still: Strategy::looks_at_states().
   [[nodiscard]] std::uint64_t hash();
 
-  /// Code under test, or a check of the scenario, is about to write there.
+  /// Code under test, or a check of the scenario, is about to write there. Or the search itself, which is paused then (Heap::Pause),
+  /// by a function that it and instrumented code have in common.
   static void written(const volatile void* address) noexcept {
-    if (active_ != nullptr) active_->written_elsewhere(reinterpret_cast<std::uintptr_t>(address));
+    if (active_ != nullptr && Heap::is_on())
+      active_->written_elsewhere(reinterpret_cast<std::uintptr_t>(address));
   }
 
  private:
