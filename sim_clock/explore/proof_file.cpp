@@ -12,7 +12,7 @@
 namespace ltsim {
 namespace {
 
-constexpr std::string_view proof_header = "ltsim proof 1";
+constexpr std::string_view proof_header = "ltsim proof 2";
 
 /// Of this program's file: FNV-1a, 64 bits.
 std::uint64_t program_hash() {
@@ -27,16 +27,19 @@ std::uint64_t program_hash() {
 }
 
 std::string head(std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}\nscenario  {}\nprogram   {:016x}\nbounds    {}, {} looks\n", proof_header, scenario,
-                     program_hash(), describe_bounds(options), options.bounds.looks);
+  return fmt::format("{}\nscenario  {}\nprogram   {:016x}\nbounds    {}, {} looks{}\n", proof_header,
+                     scenario, program_hash(), describe_bounds(options), options.bounds.looks,
+                     options.bounds.states ? ", states told apart" : "");
 }
 
 }  // namespace
 
 std::string to_proof(const ProveReport& report, std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}counted   {} executions, {} redundant, {} cut off, {} held back, {} points, {} s\n{}",
-                     head(scenario, options), report.executions, report.redundant, report.cut_off,
-                     report.held_back, report.points, report.seconds, report.checkpoint);
+  return fmt::format(
+      "{}counted   {} executions, {} redundant, {} cut off, {} held back, {} points, {} states, {} parts, {} "
+      "s\n{}",
+      head(scenario, options), report.executions, report.redundant, report.cut_off, report.held_back,
+      report.points, report.states, report.parts, report.seconds, report.checkpoint);
 }
 
 tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::string_view scenario,
@@ -55,15 +58,19 @@ tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::s
   unsigned long long cut_off = 0;
   unsigned long long held_back = 0;
   unsigned long long points = 0;
+  unsigned long long states = 0;
   if (std::sscanf(rest.c_str(),
-                  "counted %llu executions, %llu redundant, %llu cut off, %llu held back, %llu points, %lf s",
-                  &executions, &redundant, &cut_off, &held_back, &points, &report.seconds) != 6)
+                  "counted %llu executions, %llu redundant, %llu cut off, %llu held back, %llu points, %llu "
+                  "states, %u parts, %lf s",
+                  &executions, &redundant, &cut_off, &held_back, &points, &states, &report.parts,
+                  &report.seconds) != 8)
     return tl::unexpected<std::string>("the line that says what was counted is missing");
   report.executions = executions;
   report.redundant = redundant;
   report.cut_off = cut_off;
   report.held_back = held_back;
   report.points = points;
+  report.states = states;
   report.checkpoint = rest.substr(std::min(rest.find('\n') + 1, rest.size()));
   return report;
 }

@@ -22,6 +22,7 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
   Explorer explorer{world_};
   ExhaustiveStrategy strategy{world_, options.bounds};
   ProveReport report = earlier;
+  if (!earlier.checkpoint.empty()) ++report.parts;
   if (!earlier.checkpoint.empty() && !strategy.resume(earlier.checkpoint)) {
     report.error = "the checkpoint holds a line that is none of a search";
     return report;
@@ -33,7 +34,7 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
   world_.set_default_cpu(Cpu::many);
   const auto fill = [&] {
     report.done = strategy.done();
-    report.states = strategy.states();
+    report.states = earlier.states + strategy.states();
     report.seconds =
         earlier.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
@@ -104,8 +105,12 @@ std::string describe_bounds(const ProveOptions& options) {
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {
-  const std::string states =
-      options.bounds.states ? fmt::format("{} in ", counted(report.states, "state")) : std::string{};
+  std::string states;
+  if (options.bounds.states) {
+    // A part has forgotten those of the parts before it.
+    states = fmt::format("{}{} in ", counted(report.states, "state"),
+                         report.parts == 1 ? "" : fmt::format(", told apart in {} parts,", report.parts));
+  }
   const std::string held_back =
       report.held_back == 0 ? std::string{}
                             : fmt::format("; in {} of them a task that polled waited for a change after {}",

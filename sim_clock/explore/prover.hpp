@@ -24,7 +24,8 @@ struct ProveReport {
   std::uint64_t redundant = 0;   ///< left when they came to nothing new
   std::uint64_t cut_off = 0;     ///< of `executions`: longer than ExhaustiveStrategy::steps_max
   std::uint64_t held_back = 0;   ///< of `executions`: ProofBounds::looks made a polling task wait
-  std::uint64_t states = 0;      ///< told apart, with ProofBounds::states
+  std::uint64_t states = 0;      ///< told apart, with ProofBounds::states; in each part of the search anew
+  unsigned parts = 1;            ///< one more than the search was interrupted and gone on with
   std::uint64_t points = 0;
   double done = 0;        ///< of the search, by what was known of it at the end: 0 to 1
   bool complete = false;  ///< all of it

@@ -20,7 +20,7 @@ class StateHash {
   static constexpr unsigned number_bits = 40;
 
   explicit StateHash(std::uint64_t execution_number) noexcept : execution_number_(execution_number) {
-    if (Heap::has_blocks()) {
+    if (Heap::is_listing() && !Heap::blocks().empty()) {
       heap_begin_ = Heap::blocks().front().begin;
       heap_bytes_ = Heap::blocks().back().begin + Heap::blocks().back().bytes - heap_begin_;
     }

@@ -4,8 +4,8 @@
 // the heap blocks that were made since the execution began; the variables of the program; segments, semaphores, mutexes,
 // descriptors; the clock; faults that are still granted. What checks of a scenario keep is memory like any other.
 //
-// Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. So do
-// weak memory, whose histories do not go in, and one processor.
+// Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. Not for weak
+// memory, whose histories do not go in, nor for one processor (Prover refuses both).
 //
 // What does not go in: how many steps were taken, which decides nothing; what the race detector remembers, so a race that shows only
 // on one of two ways into the same state may go unseen; and which address the heap gives out next, so code that compares the address

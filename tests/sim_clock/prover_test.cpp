@@ -228,20 +228,6 @@ TEST_F(ProverTest, without_a_bound_orders_that_make_no_difference_are_one) {
   EXPECT_EQ(prove([](World& world) { two_counters_of_their_own(world, 3); }).executions, 1U);
 }
 
-TEST(SeenStatesTest, what_was_asleep_each_time_is_left_and_all_else_is_done) {
-  SeenStates seen;
-  constexpr TaskBits one = task_bit(0);
-  constexpr TaskBits two = task_bit(1);
-  EXPECT_EQ(seen.visit(1, one | two), 0U);
-  EXPECT_EQ(seen.visit(2, 0), 0U);
-  EXPECT_EQ(seen.visit(1, one), ~(one | two));  // now `two` is to be tried
-  EXPECT_EQ(seen.visit(1, two), ~one);          // now `one`
-  EXPECT_EQ(seen.visit(1, 0), ~TaskBits{0});
-  for (std::uint64_t hash = 3; hash < 5000; ++hash) EXPECT_EQ(seen.visit(hash, 0), 0U);
-  EXPECT_EQ(seen.visit(1, 0), ~TaskBits{0});
-  EXPECT_EQ(seen.size(), 4999U);
-}
-
 ProveOptions by_states() {
   ProveOptions options;
   options.bounds = {.preemptions = {}, .silences = 0U, .states = true};
@@ -288,6 +274,46 @@ TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_to
       by_states());
   ASSERT_TRUE(report.failure);
   EXPECT_EQ(report.failure->outcome.message, "task-1 was first");
+}
+
+/// Once both have ended, only the semaphore knows which of them came first.
+TEST_F(ProverTest, a_token_that_was_left_is_another_state) {
+  const ProveReport report = prove(
+      [](World& of) {
+        std::array<Word, 2> done{};
+        of.leave_semaphore("tokens", 0);
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          sem_t* const tokens = sem_open("tokens", 0);
+          static_cast<void>(i == 0 ? sem_post(tokens) : sem_trywait(tokens));
+          done[i].store(1);
+        });
+        of.process("program").start("checker", [&] {
+          sem_t* const tokens = sem_open("tokens", 0);
+          if (done[0].load() == 0 || done[1].load() == 0) return;
+          int count = 0;
+          sem_getvalue(tokens, &count);
+          of.require(count == 0, "a token is left");
+        });
+        of.run();
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "a token is left");
+}
+
+TEST_F(ProverTest, a_search_by_states_that_goes_on_says_that_it_has_parts) {
+  const Known program = last_zero(5);
+  const ProveReport whole = prove(program.body, by_states());
+  const ProveReport part = prove(program.body, by_states(), {}, 1);
+  ASSERT_FALSE(part.complete);
+  const auto read = parse_proof(to_proof(part, "test/proved", by_states()), "test/proved", by_states());
+  ASSERT_TRUE(read) << read.error();
+  const ProveReport rest = prove(program.body, by_states(), *read);
+  EXPECT_TRUE(rest.complete);
+  EXPECT_GE(rest.states, whole.states);
+  EXPECT_TRUE(describe_coverage(rest, by_states())
+                  .starts_with(fmt::format("all {} states, told apart in 2 parts, in {} executions",
+                                           rest.states, rest.executions)));
 }
 
 TEST_F(ProverTest, a_task_that_polls_is_no_way_without_end_where_states_are_told_apart) {
@@ -397,6 +423,13 @@ TEST_F(ProverTest, a_checkpoint_belongs_to_its_search) {
   weak.memory = Memory::c11;
   EXPECT_FALSE(parse_proof(file, "test/proved", weak));
   EXPECT_FALSE(parse_proof(file, "test/another", {}));
+  // Within equal bounds, too.
+  ProveOptions bounded;
+  bounded.bounds.preemptions = 1;
+  ProveOptions bounded_by_states = bounded;
+  bounded_by_states.bounds.states = true;
+  EXPECT_TRUE(parse_proof(to_proof(part, "test/proved", bounded), "test/proved", bounded));
+  EXPECT_FALSE(parse_proof(to_proof(part, "test/proved", bounded), "test/proved", bounded_by_states));
   EXPECT_FALSE(parse_proof("something else", "test/proved", {}));
   part.checkpoint = "nonsense\n";
   EXPECT_NE(prove(last_zero(1).body, {}, part).error, std::nullopt);

@@ -6,13 +6,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <csignal>
 #include <thread>
 
 #include "protocol/hardened/slave.hpp"
 #include "protocol/shared_memory_port.hpp"
 #include "tests/protocol/hardened/hardened_segment.hpp"
+#include "tests/protocol/two_sides.hpp"
 
 namespace protocol::hardened {
 namespace {
@@ -26,22 +26,6 @@ Options patient(Options::Doorbells doorbells = Options::Doorbells::two) {
   options.answer_timeout = 60s;
   options.poll_interval = 1us;
   return options;
-}
-
-void answer_until_stopped(Slave& slave) {
-  while (slave.wait_for_request()) slave.write_response(bytes("answer to " + text(slave.read_request())));
-}
-
-/// @return the first request that got another answer than its own, or -1
-int ask_in_turn(SerialPort& port, int requests_count) {
-  for (int number = 0; number < requests_count; ++number) {
-    const std::string request = "request " + std::to_string(number);
-    std::array<std::byte, 64> buffer{};
-    if (!port.write(bytes(request))) return number;
-    const auto count = port.read(buffer);
-    if (!count || text(std::span(buffer).first(*count)) != "answer to " + request) return number;
-  }
-  return -1;
 }
 
 class TwoHardenedSides : public testing::TestWithParam<Options::Doorbells> {};
