@@ -2,7 +2,7 @@
 
 namespace emulator_models {
 
-EmulatorHandler::EmulatorHandler(protocol::SlaveSharedMemoryWrapper& slave, IPlcEmulator& plc) noexcept
+EmulatorHandler::EmulatorHandler(protocol::ExchangeSlave& slave, IPlcEmulator& plc) noexcept
     : slave_{slave}, plc_{plc} {}
 
 void EmulatorHandler::run() noexcept {

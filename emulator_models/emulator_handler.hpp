@@ -6,14 +6,14 @@
 #pragma once
 
 #include "emulator_models/i_plc_emulator.hpp"
-#include "protocol/slave_shared_memory_wrapper.hpp"
+#include "protocol/exchange_sides.hpp"
 
 namespace emulator_models {
 
 class EmulatorHandler {
  public:
   /// @param slave  open; both must outlive the handler
-  EmulatorHandler(protocol::SlaveSharedMemoryWrapper& slave, IPlcEmulator& plc) noexcept;
+  EmulatorHandler(protocol::ExchangeSlave& slave, IPlcEmulator& plc) noexcept;
 
   /// Serves requests until request_stop(). One thread.
   void run() noexcept;
@@ -21,7 +21,7 @@ class EmulatorHandler {
   void request_stop() noexcept;
 
  private:
-  protocol::SlaveSharedMemoryWrapper& slave_;
+  protocol::ExchangeSlave& slave_;
   IPlcEmulator& plc_;
 };
 

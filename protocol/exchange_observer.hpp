@@ -26,6 +26,8 @@ class ExchangeObserver {
 
   /// SUBMIT: the kernel handed this request to the master wrapper; nothing has been written yet.
   virtual void submitted(std::span<const std::byte> /*request*/) noexcept {}
+  /// FILL, hardened: the master turns to the request area.
+  virtual void filling() noexcept {}
   /// PUBLISH: the state word says that there is a request.
   virtual void published() noexcept {}
   /// TAKE: the slave has been woken and turns to the request area.
@@ -44,10 +46,22 @@ class ExchangeObserver {
   /// OUTCOME: the request submitted last has ended for the kernel.
   virtual void ended(ExchangeOutcome /*outcome*/) noexcept {}
 
+  /// ATTACH, hardened: who reports it plays his role from here on, and the state word says so.
+  virtual void attached() noexcept {}
+  /// MOVE, hardened: who reports it has just put one state word in the place of another.
+  virtual void moved(std::uint32_t /*from*/, std::uint32_t /*to*/) noexcept {}
+
  protected:
   ExchangeObserver() = default;
   ExchangeObserver(const ExchangeObserver&) = default;
   ExchangeObserver& operator=(const ExchangeObserver&) = default;
 };
+
+/// Nobody who listens.
+[[nodiscard]] inline ExchangeObserver& silent_observer() noexcept {
+  struct SilentObserver final : ExchangeObserver {};
+  static SilentObserver observer;
+  return observer;
+}
 
 }  // namespace protocol

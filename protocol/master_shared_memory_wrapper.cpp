@@ -14,6 +14,14 @@ MasterSharedMemoryWrapper::MasterSharedMemoryWrapper(std::string segment_name, c
   last_request_.reserve(layout().request.capacity_bytes);
 }
 
+tl::expected<void, SharedMemoryError> MasterSharedMemoryWrapper::open() noexcept {
+  return SharedMemoryWrapper::open();
+}
+
+void MasterSharedMemoryWrapper::close() noexcept { SharedMemoryWrapper::close(); }
+
+bool MasterSharedMemoryWrapper::is_open() const noexcept { return SharedMemoryWrapper::is_open(); }
+
 tl::expected<void, SharedMemoryError> MasterSharedMemoryWrapper::write(
     std::span<const std::byte> request) noexcept {
   if (!is_open()) return tl::unexpected(SharedMemoryError::not_open);
@@ -79,8 +87,13 @@ void MasterSharedMemoryWrapper::end_request(ExchangeOutcome outcome) noexcept {
   observer().ended(outcome);
 }
 
-void MasterSharedMemoryWrapper::set_read_timeout(std::chrono::nanoseconds timeout) noexcept {
-  read_timeout_ = timeout;
+void MasterSharedMemoryWrapper::set_timeouts(std::chrono::nanoseconds /*take*/,
+                                             std::chrono::nanoseconds read) noexcept {
+  read_timeout_ = read;
+}
+
+std::size_t MasterSharedMemoryWrapper::response_bytes_max() const noexcept {
+  return layout().response.capacity_bytes;
 }
 
 }  // namespace protocol

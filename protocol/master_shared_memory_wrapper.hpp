@@ -18,28 +18,38 @@
 
 #include <tl/expected.hpp>
 
+#include "protocol/exchange_sides.hpp"
 #include "protocol/shared_memory_wrapper.hpp"
 
 namespace protocol {
 
-class MasterSharedMemoryWrapper final : public SharedMemoryWrapper {
+class MasterSharedMemoryWrapper final : public SharedMemoryWrapper, public ExchangeMaster {
  public:
   MasterSharedMemoryWrapper(std::string segment_name, const PaperOptions& options,
                             ExchangeObserver* observer = nullptr);
+
+  [[nodiscard]] tl::expected<void, SharedMemoryError> open() noexcept override;
+  void close() noexcept override;
+  [[nodiscard]] bool is_open() const noexcept override;
 
   /// Writes one request and wakes the slave. Does not look at the state word: a request that the slave has
   /// not taken yet is overwritten.
   /// @return request_too_long: nothing was done; semaphore_full (K4 = one): the request stands in the area
   /// and
   ///         in the state word, but the slave was not woken for it
-  [[nodiscard]] tl::expected<void, SharedMemoryError> write(std::span<const std::byte> request) noexcept;
+  [[nodiscard]] tl::expected<void, SharedMemoryError> write(
+      std::span<const std::byte> request) noexcept override;
 
   /// Waits for the response as K1 and K8 say, and copies it. What does not fit into `into` is lost.
   /// @return bytes copied; 0 after the time-out, and when the response is empty
-  [[nodiscard]] tl::expected<std::size_t, SharedMemoryError> get_response(std::span<std::byte> into) noexcept;
+  [[nodiscard]] tl::expected<std::size_t, SharedMemoryError> get_response(
+      std::span<std::byte> into) noexcept override;
 
-  /// K8: in place of PaperOptions::read_timeout, from the next get_response() on. Zero: one look, no wait.
-  void set_read_timeout(std::chrono::nanoseconds timeout) noexcept;
+  /// K8: `read` in place of PaperOptions::read_timeout, from the next get_response() on. Zero: one look, no wait. The
+  /// other has no meaning here: a write never waits.
+  void set_timeouts(std::chrono::nanoseconds take, std::chrono::nanoseconds read) noexcept override;
+
+  [[nodiscard]] std::size_t response_bytes_max() const noexcept override;
 
  private:
   bool send(std::span<const std::byte> request) noexcept;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/hardened/master.hpp"
+#include "protocol/master_shared_memory_wrapper.hpp"
+
 namespace protocol {
 
 namespace {
@@ -13,10 +16,18 @@ PortError to_port_error(SharedMemoryError error) noexcept {
       return PortError::not_open;
     case SharedMemoryError::cannot_open:
     case SharedMemoryError::segment_too_small:
+    case SharedMemoryError::not_made_in_time:
+    case SharedMemoryError::other_layout:
+    case SharedMemoryError::other_segment:
       return PortError::cannot_open;
+    case SharedMemoryError::role_taken:
+      return PortError::already_in_use;
     case SharedMemoryError::request_too_long:
       return PortError::message_too_long;
     case SharedMemoryError::semaphore_full:
+    case SharedMemoryError::no_slave:
+    case SharedMemoryError::slave_is_busy:
+    case SharedMemoryError::rejected:
       return PortError::refused;
   }
   return PortError::line_lost;
@@ -26,24 +37,31 @@ PortError to_port_error(SharedMemoryError error) noexcept {
 
 SharedMemoryPort::SharedMemoryPort(std::string segment_name, const PaperOptions& options,
                                    ExchangeObserver* observer)
-    : wrapper_(std::move(segment_name), options, observer),
-      received_(wrapper_.layout().response.capacity_bytes) {}
+    : SharedMemoryPort(
+          std::make_unique<MasterSharedMemoryWrapper>(std::move(segment_name), options, observer)) {}
+
+SharedMemoryPort::SharedMemoryPort(std::string segment_name, const hardened::Options& options,
+                                   ExchangeObserver* observer)
+    : SharedMemoryPort(std::make_unique<hardened::Master>(std::move(segment_name), options, observer)) {}
+
+SharedMemoryPort::SharedMemoryPort(std::unique_ptr<ExchangeMaster> master)
+    : master_(std::move(master)), received_(master_->response_bytes_max()) {}
 
 tl::expected<void, PortError> SharedMemoryPort::open() noexcept {
-  return wrapper_.open().map_error(to_port_error);
+  return master_->open().map_error(to_port_error);
 }
 
 void SharedMemoryPort::close() noexcept {
   purge();
-  wrapper_.close();
+  master_->close();
 }
 
-bool SharedMemoryPort::is_open() const noexcept { return wrapper_.is_open(); }
+bool SharedMemoryPort::is_open() const noexcept { return master_->is_open(); }
 
 tl::expected<std::size_t, PortError> SharedMemoryPort::write(std::span<const std::byte> bytes) noexcept {
   if (!is_open()) return tl::unexpected(PortError::not_open);
   if (bytes.empty()) return 0;
-  const auto written = wrapper_.write(bytes);
+  const auto written = master_->write(bytes);
   if (!written) return tl::unexpected(to_port_error(written.error()));
   return bytes.size();
 }
@@ -52,7 +70,7 @@ tl::expected<std::size_t, PortError> SharedMemoryPort::read(std::span<std::byte>
   if (!is_open()) return tl::unexpected(PortError::not_open);
   if (into.empty()) return 0;
   if (unread_.empty()) {
-    const auto length = wrapper_.get_response(received_);
+    const auto length = master_->get_response(received_);
     if (!length) return tl::unexpected(to_port_error(length.error()));
     unread_ = std::span(received_).first(*length);
   }
@@ -63,7 +81,7 @@ tl::expected<std::size_t, PortError> SharedMemoryPort::read(std::span<std::byte>
 }
 
 void SharedMemoryPort::set_timeouts(const PortTimeouts& timeouts) noexcept {
-  wrapper_.set_read_timeout(timeouts.read);
+  master_->set_timeouts(timeouts.write, timeouts.read);
 }
 
 void SharedMemoryPort::purge() noexcept { unread_ = {}; }

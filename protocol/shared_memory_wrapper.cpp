@@ -18,13 +18,6 @@ namespace ipc = boost::interprocess;
 static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "a lock cannot span processes");
 static_assert(std::atomic_ref<std::uint8_t>::is_always_lock_free, "a lock cannot span processes");
 
-struct SilentObserver final : ExchangeObserver {};
-
-ExchangeObserver& silent_observer() noexcept {
-  static SilentObserver observer;
-  return observer;
-}
-
 std::size_t size_bytes(const ipc::shared_memory_object& segment) {
   ipc::offset_t size = 0;
   return segment.get_size(size) ? static_cast<std::size_t>(size) : 0;
@@ -50,22 +43,6 @@ void set_start_count(ipc::named_semaphore& semaphore, const ipc::shared_memory_o
 }
 
 }  // namespace
-
-std::string_view to_string(SharedMemoryError error) noexcept {
-  switch (error) {
-    case SharedMemoryError::not_open:
-      return "the shared memory is not open";
-    case SharedMemoryError::cannot_open:
-      return "the shared memory or its semaphore cannot be opened";
-    case SharedMemoryError::segment_too_small:
-      return "the shared memory of that name is too small for the areas asked for";
-    case SharedMemoryError::request_too_long:
-      return "the request is longer than the request area";
-    case SharedMemoryError::semaphore_full:
-      return "the semaphore is released already";
-  }
-  return "unknown shared memory error";
-}
 
 SharedMemoryWrapper::SharedMemoryWrapper(std::string segment_name, const PaperOptions& options,
                                          ExchangeObserver* observer, Side side)

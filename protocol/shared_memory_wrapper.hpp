@@ -27,6 +27,7 @@
 #include "protocol/exchange_observer.hpp"
 #include "protocol/paper_options.hpp"
 #include "protocol/segment_layout.hpp"
+#include "protocol/shared_memory_error.hpp"
 
 namespace protocol {
 
@@ -38,16 +39,6 @@ inline constexpr std::uint32_t request_half = 0x0000'FFFF;
 inline constexpr std::uint32_t request_pending = 0x0000'0001;
 inline constexpr std::uint32_t response_half = 0xFFFF'0000;
 inline constexpr std::uint32_t response_pending = 0x0001'0000;
-
-enum class SharedMemoryError : std::uint8_t {
-  not_open,           ///< the wrapper was never opened, or has been closed
-  cannot_open,        ///< the system refused the segment or the semaphore
-  segment_too_small,  ///< a segment of that name exists and has no room for the areas asked for
-  request_too_long,   ///< more bytes than the request area holds
-  semaphore_full,     ///< K4 = one: the post before this one has not been consumed
-};
-
-[[nodiscard]] std::string_view to_string(SharedMemoryError error) noexcept;
 
 class SharedMemoryWrapper {
  public:

@@ -18,28 +18,29 @@
 #include <string>
 #include <vector>
 
+#include "protocol/exchange_sides.hpp"
 #include "protocol/shared_memory_wrapper.hpp"
 
 namespace protocol {
 
-class SlaveSharedMemoryWrapper final : public SharedMemoryWrapper {
+class SlaveSharedMemoryWrapper final : public SharedMemoryWrapper, public ExchangeSlave {
  public:
   SlaveSharedMemoryWrapper(std::string segment_name, const PaperOptions& options,
                            ExchangeObserver* observer = nullptr);
 
   /// Waits until the semaphore is released. A signal does not end the wait.
   /// @return false when a stop was requested; a request that is pending then is left as it is
-  [[nodiscard]] bool wait_for_request() noexcept;
+  [[nodiscard]] bool wait_for_request() noexcept override;
 
   /// @return the bytes that the emulator is to execute, valid until the next read_request()
-  [[nodiscard]] std::span<const std::byte> read_request() noexcept;
+  [[nodiscard]] std::span<const std::byte> read_request() noexcept override;
 
   /// @param response  what exceeds the response area is cut off, as the published design sends no error
-  void write_response(std::span<const std::byte> response) noexcept;
+  void write_response(std::span<const std::byte> response) noexcept override;
 
   /// Lets wait_for_request() return false, now and for good. Async-signal-safe. Only the first call has an
   /// effect.
-  void request_stop() noexcept;
+  void request_stop() noexcept override;
 
  private:
   std::vector<std::byte> request_;

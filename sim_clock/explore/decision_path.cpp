@@ -167,8 +167,11 @@ bool DecisionPath::must_try_one_of(std::size_t decision, TaskBits any) {
   return true;
 }
 
+void DecisionPath::end_execution() {
+  if (!is_at_end()) note_that_runs_differ();
+}
+
 bool DecisionPath::advance() {
-  if (at_ < decisions_.size()) note_that_runs_differ();
   if (!trouble_.empty()) return false;
   while (decisions_.size() > settled_ && !decisions_.back().advance()) decisions_.pop_back();
   if (decisions_.size() <= settled_) return false;

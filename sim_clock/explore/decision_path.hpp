@@ -98,7 +98,9 @@ class DecisionPath {
   /// @return false: none of them can be
   bool must_try_one_of(std::size_t decision, TaskBits any);
 
-  /// After an execution: on to the next one. @return false: that was the last
+  /// One that ends before it has come to all of them is trouble().
+  void end_execution();
+  /// After that: on to the next execution. @return false: that was the last
   [[nodiscard]] bool advance();
   /// Of the next execution: so many of its steps are those of the last one.
   [[nodiscard]] std::uint32_t steps_in_common() const noexcept { return steps_in_common_; }

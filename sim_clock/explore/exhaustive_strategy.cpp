@@ -117,7 +117,7 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
   if (path_.is_at_end()) {
     const bool can_be_preempted = goes_on && (candidates & task_bit(runner)) != 0;
     TaskBits done = asleep_ & candidates;
-    if (bounds_.states) done |= visit_state(can_be_preempted ? runner : the_barrier, candidates);
+    if (bounds_.states) done |= visit_state(can_be_preempted ? runner : the_barrier, asleep_) & candidates;
     TaskBits first = candidates & ~done;
     if (first == 0) {
       if (is_reduced()) add_waits(waiting);
@@ -125,7 +125,7 @@ std::size_t ExhaustiveStrategy::choose_task(const TaskChoice& choice) noexcept {
     }
     if (puts_to_sleep()) {
       as_new.asleep = bounds_.states ? done : asleep_;
-    } else if (can_be_preempted && preemptions_ >= *bounds_.preemptions) {
+    } else if (bounds_.preemptions && can_be_preempted && preemptions_ >= *bounds_.preemptions) {
       first = task_bit(runner);
     }
     as_new.chosen =
@@ -151,7 +151,13 @@ void ExhaustiveStrategy::add_waits(TaskBits waiting) noexcept {
   }
 }
 
-TaskBits ExhaustiveStrategy::visit_state(std::size_t runner, TaskBits candidates) noexcept {
+void ExhaustiveStrategy::only_one_can_run(TaskId task) noexcept {
+  if (is_too_long() || task >= tasks_max || !path_.is_at_end()) return;
+  look_around();
+  if ((visit_state(the_barrier, asleep_ & ~task_bit(task)) & task_bit(task)) != 0) leave_as_redundant();
+}
+
+TaskBits ExhaustiveStrategy::visit_state(std::size_t runner, TaskBits asleep) noexcept {
   StateHash hash{world_.execution_number()};
   hash.add(world_.whole_state().hash());
   // How much of the bounds is left, and what it depends on.
@@ -164,7 +170,7 @@ TaskBits ExhaustiveStrategy::visit_state(std::size_t runner, TaskBits candidates
     hash.add(silent_);
     hash.add(silence_steps_ << 1U | (clock_was_used_ ? 1U : 0U));
   }
-  return states_.visit(hash.value(), asleep_) & candidates;
+  return states_.visit(hash.value(), asleep);
 }
 
 SlowMoment ExhaustiveStrategy::slow_moment(const SlowMomentChoice& choice) noexcept {
@@ -351,9 +357,10 @@ void ExhaustiveStrategy::wake_sleepers(const Step& step) noexcept {
 }
 
 bool ExhaustiveStrategy::advance() {
+  path_.end_execution();
   if (!trouble().empty()) return false;
   if (is_reduced()) steps_.find(path_);
-  return path_.advance() && trouble().empty();
+  return path_.advance();
 }
 
 }  // namespace ltsim

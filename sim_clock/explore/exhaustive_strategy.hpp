@@ -12,6 +12,10 @@
 // With a bound on preemptions, which the orders of one trace do not share, there is no reduction: all schedules within it are run.
 // Then time may also pass although somebody can run, in so many silences (ProofBounds::silences).
 //
+// Where states are told apart (ProofBounds::states), an execution is left in a state that was seen. Sleep sets leave out ways into a
+// state as well; what was asleep in it each time that it was come to has not been tried there (Godefroid: Partial-Order Methods for
+// the Verification of Concurrent Systems, 1996, 5.4).
+//
 // Besides the order of tasks and time the choices are: faults, as often as the scenario grants them; what the scenario asks; and
 // which store a load of a weak memory sees.
 //
@@ -42,8 +46,8 @@ struct ProofBounds {
   /// end after its first timer, and wherever somebody has done more than look (and sleep) since the last: a task that looks in vain
   /// again and again, and at a clock, does so until its time is over. Only with a bound on preemptions, or with `states`.
   std::optional<unsigned> silences{0};
-  unsigned looks =
-      4;  ///< in vain, at the same thing, until a polling task waits for a change; not with `states`
+  /// In vain, at the same thing, until a polling task waits for a change; not with `states`.
+  unsigned looks = 4;
   /// States are told apart, and one that was seen is left, instead of a reduction.
   bool states = false;
 };
@@ -83,6 +87,7 @@ class ExhaustiveStrategy final : public Strategy {
   [[nodiscard]] std::string_view name() const noexcept override { return "exhaustive"; }
   void begin_execution(std::uint64_t seed) noexcept override;
   [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
+  void only_one_can_run(TaskId task) noexcept override;
   [[nodiscard]] SlowMoment slow_moment(const SlowMomentChoice& choice) noexcept override;
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
@@ -97,9 +102,11 @@ class ExhaustiveStrategy final : public Strategy {
  private:
   static constexpr std::size_t steppers_count = tasks_max + 1;  // the_barrier is one
 
-  /// A bound on preemptions is nothing that the orders of one trace share.
-  [[nodiscard]] bool puts_to_sleep() const noexcept { return !bounds_.preemptions; }
-  /// Where states are told apart, all that can be done in each is tried.
+  /// Bounds on preemptions and on silences are nothing that the orders of one trace share.
+  [[nodiscard]] bool puts_to_sleep() const noexcept {
+    return !bounds_.preemptions && (!bounds_.silences || *bounds_.silences == 0);
+  }
+  /// Where states are told apart, all that can be done in each of them is tried.
   [[nodiscard]] bool is_reduced() const noexcept { return puts_to_sleep() && !bounds_.states; }
   /// Whether there have been steps_max, which counts as cut off.
   [[nodiscard]] bool is_too_long() noexcept {
@@ -114,10 +121,10 @@ class ExhaustiveStrategy final : public Strategy {
   std::size_t leave_as_redundant() noexcept;
   /// Those who wait race with who took what they wait for: they might have come first.
   void add_waits(TaskBits waiting) noexcept;
-  /// Comes to a state in which those of `candidates` that are not asleep are to be tried.
+  /// Comes to a state in which all are to be tried that can go on, but those that are asleep.
   /// @param runner  who could be preempted; or the_barrier
-  /// @return        those of them that were tried in it before
-  [[nodiscard]] TaskBits visit_state(std::size_t runner, TaskBits candidates) noexcept;
+  /// @return        those that were tried in it before
+  [[nodiscard]] TaskBits visit_state(std::size_t runner, TaskBits asleep) noexcept;
   void begin_step(std::size_t stepper, const Operation& operation, bool is_resumed) noexcept;
   void add_barrier(bool is_time) noexcept;
   /// What happened since the last step besides it: who was woken, by whom or by time that passed by itself.
@@ -151,7 +158,7 @@ class ExhaustiveStrategy final : public Strategy {
   TaskBits awaits_join_ = 0;
   TaskBits joined_ = 0;
   std::vector<std::uint32_t> woken_by_;  // by task
-  std::vector<std::uint32_t> follows_;   // by task: for its next event
+  std::vector<std::uint32_t> follows_;   // by task: for its next step
   bool is_redundant_ = false;
   bool is_cut_off_ = false;
   bool is_held_back_ = false;

@@ -12,7 +12,7 @@
 namespace ltsim {
 namespace {
 
-constexpr std::string_view proof_header = "ltsim proof 2";
+constexpr std::string_view proof_header = "ltsim proof 3";
 
 /// Of this program's file: FNV-1a, 64 bits.
 std::uint64_t program_hash() {
@@ -27,14 +27,16 @@ std::uint64_t program_hash() {
 }
 
 std::string head(std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}\nscenario  {}\nprogram   {:016x}\nbounds    {}, {} looks\n", proof_header, scenario,
-                     program_hash(), describe_bounds(options), options.bounds.looks);
+  return fmt::format("{}\nscenario  {}\nprogram   {:016x}\nbounds    {}, {} looks{}\n", proof_header,
+                     scenario, program_hash(), describe_bounds(options), options.bounds.looks,
+                     options.bounds.states ? ", states told apart" : "");
 }
 
 }  // namespace
 
 std::string to_proof(const ProveReport& report, std::string_view scenario, const ProveOptions& options) {
-  return fmt::format("{}seconds   {}\n{}", head(scenario, options), report.seconds, report.checkpoint);
+  return fmt::format("{}took      {} s in {} runs\nstates    {}\n{}", head(scenario, options), report.seconds,
+                     report.runs, report.states, report.checkpoint);
 }
 
 tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::string_view scenario,
@@ -52,9 +54,13 @@ tl::expected<ProveReport, std::string> parse_proof(std::string_view text, std::s
         "is of another scenario, of other bounds or of another build of this program");
   const std::string rest{text.substr(expected.size())};
   ProveReport report;
-  if (std::sscanf(rest.c_str(), "seconds %lf", &report.seconds) != 1)
-    return tl::unexpected<std::string>("the line that says how long it has taken is missing");
-  report.checkpoint = rest.substr(std::min(rest.find('\n') + 1, rest.size()));
+  unsigned long long states = 0;
+  int header_size = 0;
+  if (std::sscanf(rest.c_str(), "took %lf s in %u runs states %llu%n", &report.seconds, &report.runs, &states,
+                  &header_size) != 3)
+    return tl::unexpected<std::string>("the lines that say what was done so far are missing");
+  report.states = states;
+  report.checkpoint = rest.substr(std::min(static_cast<std::size_t>(header_size) + 1, rest.size()));
   const auto tree = SearchTree::parse(report.checkpoint);
   if (!tree) return tl::unexpected<std::string>("holds a line that is none of a search");
   report.counts = tree->counts();

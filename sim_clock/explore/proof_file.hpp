@@ -1,10 +1,11 @@
 // An interrupted proof as a file: where the search stands, and what it is a search of.
 //
-//   ltsim proof 2
+//   ltsim proof 3
 //   scenario  paper/three-requests
 //   program   8a31b6c0d22f4b17
-//   bounds    at most 2 preemptions and at most 1 silence, memory sc, 4 looks
-//   seconds   1.25
+//   bounds    at most 2 preemptions and 1 silence, memory sc, 4 looks
+//   took      1.25 s in 1 runs
+//   states    0
 //   part 12033 executions, 107 redundant, 0 cut off, 0 held back, 924511 points
 //   branch 1 0                        so many parts of it follow, before them so many were over
 //   task 0 of 0x3 to-try 0,1 tried 0x0 asleep 0x0

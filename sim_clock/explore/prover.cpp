@@ -19,8 +19,9 @@ constexpr std::uint64_t executions_per_look_at_the_time = 8;
 }  // namespace
 
 ProofUnderWay::ProofUnderWay(const ProveOptions& options, const ProveReport& earlier)
-    : options_(options), earlier_seconds_(earlier.seconds) {
+    : options_(options), earlier_seconds_(earlier.seconds), earlier_states_(earlier.states) {
   if (earlier.checkpoint.empty()) return;
+  runs_ = earlier.runs + 1;
   auto read = SearchTree::parse(earlier.checkpoint);
   if (!read) throw Explorer::NotSimulable{"the checkpoint holds a line that is none of a search"};
   tree_ = std::move(*read);
@@ -31,13 +32,13 @@ bool ProofUnderWay::is_to_stop(const ProveProgress& on_progress, std::uint64_t s
   if (options_.seconds_max && now - began_at_ >= *options_.seconds_max) return true;
   if (now < next_look_) return false;
   next_look_ = now + std::chrono::milliseconds{100};
-  ProveReport so_far = report();
-  so_far.states = states;
-  return !on_progress(so_far);
+  return !on_progress(report(states));
 }
 
-ProveReport ProofUnderWay::report() const {
+ProveReport ProofUnderWay::report(std::uint64_t states) const {
   ProveReport report;
+  report.states = earlier_states_ + states;
+  report.runs = runs_;
   report.counts = tree_.counts();
   report.complete = tree_.is_complete();
   report.done = tree_.done();
@@ -46,8 +47,7 @@ ProveReport ProofUnderWay::report() const {
 }
 
 ProveReport ProofUnderWay::final_report(SearchRunner& runner) const {
-  ProveReport final = report();
-  final.states = runner.states();
+  ProveReport final = report(runner.states());
   if (const SearchTree::Part* const ended = tree_.ended()) {
     if (SearchTree::end_of(*ended).end == SliceEnd::in_error) {
       final.error = SearchTree::end_of(*ended).error;
@@ -87,19 +87,23 @@ ProveReport Prover::prove(const Scenario& scenario, const ProveOptions& options,
 
 std::string describe_bounds(const ProveOptions& options) {
   const ProofBounds& bounds = options.bounds;
-  const auto of_bound = [](const std::optional<unsigned>& bound, const char* what) {
-    return bound ? "at most " + counted(*bound, what) : fmt::format("any number of {}s", what);
-  };
+  const std::string preemptions = bounds.preemptions ? "at most " + counted(*bounds.preemptions, "preemption")
+                                                     : std::string{"any number of preemptions"};
+  std::string silences = "any number of silences";
+  if (bounds.silences) silences = *bounds.silences == 0 ? "no silence" : counted(*bounds.silences, "silence");
   const bool is_reduced = !bounds.preemptions && !bounds.states;
-  return fmt::format("{} and {}{}, memory {}", of_bound(bounds.preemptions, "preemption"),
-                     bounds.silences == 0U ? std::string{"no silence"} : of_bound(bounds.silences, "silence"),
+  return fmt::format("{} and {}{}, memory {}", preemptions, silences,
                      is_reduced ? ", one of each order that makes a difference" : "",
                      to_string(options.memory));
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {
-  const std::string states =
-      options.bounds.states ? fmt::format("{} in ", counted(report.states, "state")) : std::string{};
+  std::string states;
+  if (options.bounds.states) {
+    // A run has forgotten those of the runs before it.
+    states = fmt::format("{}{} in ", counted(report.states, "state"),
+                         report.runs == 1 ? "" : fmt::format(", told apart in {} runs,", report.runs));
+  }
   const std::string held_back =
       report.counts.held_back == 0
           ? std::string{}

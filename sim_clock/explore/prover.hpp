@@ -15,7 +15,8 @@ namespace ltsim {
 
 struct ProveReport {
   SearchCounts counts;
-  std::uint64_t states = 0;  ///< told apart, with ProofBounds::states
+  std::uint64_t states = 0;  ///< told apart, with ProofBounds::states; in each run anew
+  unsigned runs = 1;         ///< one more than the search was interrupted and gone on with
   double done = 0;           ///< of the search, by what was known of it at the end: 0 to 1
   bool complete = false;     ///< all of it
   double seconds = 0;
@@ -49,16 +50,20 @@ class ProofUnderWay {
 
   [[nodiscard]] SearchTree& tree() noexcept { return tree_; }
   /// Whether the time is over, or `on_progress`, which is called now and then, has said so.
+  /// @param states  that were told apart in this run
   [[nodiscard]] bool is_to_stop(const ProveProgress& on_progress, std::uint64_t states);
-  [[nodiscard]] ProveReport report() const;
   /// @param runner  has been warmed up
   [[nodiscard]] ProveReport final_report(SearchRunner& runner) const;
 
  private:
+  [[nodiscard]] ProveReport report(std::uint64_t states) const;
+
   using Clock = std::chrono::steady_clock;
 
   const ProveOptions& options_;
   double earlier_seconds_;
+  std::uint64_t earlier_states_;
+  unsigned runs_ = 1;
   SearchTree tree_;
   Clock::time_point began_at_ = Clock::now();
   Clock::time_point next_look_ = began_at_;

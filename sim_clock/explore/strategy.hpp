@@ -110,6 +110,8 @@ class Strategy {
   /// Whether choose_task() is to be called while every task stands still, so that World::whole_state() can be asked. Asked once an
   /// execution.
   [[nodiscard]] virtual bool looks_at_states() const noexcept { return false; }
+  /// Where states are looked at: every task stands still, and `task` is the only one that can go on, which is no choice.
+  virtual void only_one_can_run(TaskId /*task*/) noexcept {}
   /// `task` goes on and performs `operation`, whether or not there was a choice.
   virtual void performs(TaskId /*task*/, const Operation& /*operation*/) noexcept {}
   /// `task` goes on with its operation, which it had to wait in.

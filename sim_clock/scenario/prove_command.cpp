@@ -157,8 +157,7 @@ void add_prove_command(CLI::App& app, Command& chosen) {
           "with --preemptions or --states: so often time may go on, from timer to timer, while some task "
           "that "
           "could run takes no step; \"any\" with --states: any number")
-      ->default_str("0")
-      ->check(CLI::NonNegativeNumber | CLI::IsMember({"any"}));
+      ->default_str("0");
   command->add_flag(
       "--states", arguments->options.bounds.states,
       "tell states apart by the whole memory, and go on from each of them once, instead of leaving "

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "sim_clock/world/heap.hpp"
+#include "sim_clock/world/wipe_stack.hpp"
 
 // Exported by glibc for those who stand in front of malloc.
 extern "C" void* __libc_malloc(std::size_t bytes);
@@ -18,11 +19,22 @@ namespace {
 
 using ltsim::Heap;
 
+/// While something is listed: with what is allocated meanwhile, entered or not, a freed block may be gone.
 [[gnu::noinline]] void* entered(void* block, std::size_t bytes) noexcept {
   if (block == nullptr) return nullptr;
+  if (!Heap::is_on()) {
+    Heap::allocated_by_others(block, bytes);
+    return block;  // nobody's stack is looked at where nothing is entered
+  }
   std::memset(block, 0, bytes);
   Heap::allocated(block, bytes);
+  ltsim::wipe_stack<ltsim::stack_bytes_of_ours>();
   return block;
+}
+
+[[gnu::noinline]] void left(void* block) noexcept {
+  Heap::freed(block);
+  ltsim::wipe_stack<ltsim::stack_bytes_of_ours>();
 }
 
 [[gnu::noinline]] void* entered_again(void* block, std::size_t bytes) noexcept {
@@ -30,44 +42,45 @@ using ltsim::Heap;
   void* const other = entered(__libc_malloc(bytes), bytes);
   if (other == nullptr) return nullptr;
   std::memcpy(other, block, before < bytes ? before : bytes);
-  Heap::freed(block);
+  left(block);
   __libc_free(block);
   return other;
 }
 
 void* allocate_aligned(std::size_t alignment, std::size_t bytes) noexcept {
   void* const block = __libc_memalign(alignment, bytes);
-  return Heap::is_on() ? entered(block, bytes) : block;
+  return Heap::is_listing() ? entered(block, bytes) : block;
 }
 
 }  // namespace
 
 extern "C" void* malloc(std::size_t bytes) {
-  if (Heap::is_on()) [[unlikely]]
+  if (Heap::is_listing()) [[unlikely]]
     return entered(__libc_malloc(bytes), bytes);
   return __libc_malloc(bytes);
 }
 
 extern "C" void* calloc(std::size_t count, std::size_t bytes) {
   void* const block = __libc_calloc(count, bytes);
-  if (Heap::is_on() && block != nullptr) [[unlikely]]
-    Heap::allocated(block, count * bytes);
-  return block;
+  return Heap::is_listing() ? entered(block, count * bytes) : block;
 }
 
 extern "C" void* realloc(void* block, std::size_t bytes) {
-  if (Heap::is_on() && block == nullptr) [[unlikely]]
+  if (Heap::is_listing() && block == nullptr) [[unlikely]]
     return entered(__libc_malloc(bytes), bytes);
-  if (Heap::has_blocks() && Heap::bytes_of(block) != 0) [[unlikely]] {
+  if (Heap::is_listing() && Heap::bytes_of(block) != 0) [[unlikely]] {
     if (bytes != 0) return entered_again(block, bytes);
-    Heap::freed(block);
+    left(block);
   }
-  return __libc_realloc(block, bytes);
+  void* const other = __libc_realloc(block, bytes);
+  if (Heap::is_listing() && other != nullptr) [[unlikely]]
+    Heap::allocated_by_others(other, bytes);
+  return other;
 }
 
 extern "C" void free(void* block) {
-  if (Heap::has_blocks()) [[unlikely]]
-    Heap::freed(block);
+  if (Heap::is_listing()) [[unlikely]]
+    left(block);
   __libc_free(block);
 }
 

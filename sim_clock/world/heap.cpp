@@ -10,15 +10,6 @@
 namespace ltsim {
 namespace {
 
-/// Zeros of the system's own; never given back.
-template <typename Entry>
-Entry* map_table(std::size_t count) noexcept {
-  void* const memory = mmap(nullptr, count * sizeof(Entry), PROT_READ | PROT_WRITE,
-                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  LTSIM_CHECK(memory != MAP_FAILED);
-  return static_cast<Entry*>(memory);
-}
-
 std::uintptr_t number_of(const void* address) noexcept { return reinterpret_cast<std::uintptr_t>(address); }
 
 /// Where a block that begins there is, or would be.
@@ -32,54 +23,78 @@ std::size_t index_of(std::span<const Heap::Block> blocks, std::uintptr_t address
 }  // namespace
 
 void Heap::begin(Task* const& running) noexcept {
-  if (blocks_ == nullptr) {
-    blocks_ = map_table<Block>(blocks_max);
-    allocated_by_ = map_table<std::uint32_t>(tasks_max + 1);
+  if (table_ == nullptr) {
+    void* const memory = mmap(nullptr, sizeof(Table), PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    LTSIM_CHECK(memory != MAP_FAILED);
+    table_ = static_cast<Table*>(memory);  // zeros
   }
-  count_ = 0;
-  overflowed_ = false;
-  running_ = &running;
-  std::fill_n(allocated_by_, tasks_max + 1, 0U);
-  is_on_ = true;
+  table_->count = 0;
+  table_->overflowed = false;
+  table_->running = &running;
+  table_->allocated_by.fill(0);
+  is_listing_ = is_on_ = true;
 }
 
-void Heap::end() noexcept {
-  is_on_ = false;
-  count_ = 0;
-}
+void Heap::end() noexcept { is_listing_ = is_on_ = false; }
 
 const Heap::Block* Heap::find(std::uintptr_t address) noexcept {
-  if (count_ == 0 || address < blocks_[0].begin) return nullptr;
-  std::size_t index = index_of(blocks(), address);
-  if (index == count_ || blocks_[index].begin != address) --index;
-  const Block& block = blocks_[index];
+  const auto all = blocks();
+  if (all.empty() || address < all.front().begin) return nullptr;
+  std::size_t index = index_of(all, address);
+  if (index == all.size() || all[index].begin != address) --index;
+  const Block& block = all[index];
   return address <= block.begin + block.bytes ? &block : nullptr;
 }
 
 void Heap::allocated(const void* begin, std::size_t bytes) noexcept {
-  if (count_ == blocks_max) {
-    overflowed_ = true;
+  bytes = std::max(bytes, std::size_t{1});
+  forget_freed(number_of(begin), bytes);
+  if (table_->count == blocks_max) {
+    table_->overflowed = true;
     return;
   }
-  const std::size_t owner = *running_ == nullptr ? tasks_max : (*running_)->id;
+  const std::size_t owner = *table_->running == nullptr ? tasks_max : (*table_->running)->id;
+  Block* const all = table_->blocks.data();
   const std::size_t index = index_of(blocks(), number_of(begin));
-  std::memmove(blocks_ + index + 1, blocks_ + index, (count_ - index) * sizeof(Block));
-  blocks_[index] = {.begin = number_of(begin),
-                    .bytes = std::max(bytes, std::size_t{1}),
-                    .name = std::uint64_t{owner} << 32U | ++allocated_by_[owner]};
-  ++count_;
+  std::memmove(all + index + 1, all + index, (table_->count - index) * sizeof(Block));
+  all[index] = {.begin = number_of(begin),
+                .bytes = bytes,
+                .name = std::uint64_t{owner} << 32U | ++table_->allocated_by[owner],
+                .is_freed = false};
+  ++table_->count;
+}
+
+void Heap::allocated_by_others(const void* begin, std::size_t bytes) noexcept {
+  forget_freed(number_of(begin), bytes);
+}
+
+void Heap::forget_freed(std::uintptr_t begin, std::size_t bytes) noexcept {
+  const auto all = blocks();
+  std::size_t first = index_of(all, begin);
+  if (first != 0 && all[first - 1].begin + all[first - 1].bytes > begin) --first;
+  std::size_t end = first;
+  while (end != all.size() && all[end].begin < begin + bytes) ++end;
+  if (first == end) return;
+  std::memmove(table_->blocks.data() + first, table_->blocks.data() + end,
+               (all.size() - end) * sizeof(Block));
+  table_->count -= end - first;
+}
+
+Heap::Block* Heap::block_at(const void* begin) noexcept {
+  const std::size_t index = index_of(blocks(), number_of(begin));
+  if (index == table_->count) return nullptr;
+  Block& block = table_->blocks[index];
+  return block.begin == number_of(begin) && !block.is_freed ? &block : nullptr;
 }
 
 void Heap::freed(const void* begin) noexcept {
-  const std::size_t index = index_of(blocks(), number_of(begin));
-  if (index == count_ || blocks_[index].begin != number_of(begin)) return;
-  --count_;
-  std::memmove(blocks_ + index, blocks_ + index + 1, (count_ - index) * sizeof(Block));
+  if (Block* const block = block_at(begin); block != nullptr) block->is_freed = true;
 }
 
 std::size_t Heap::bytes_of(const void* begin) noexcept {
-  const std::size_t index = index_of(blocks(), number_of(begin));
-  return index == count_ || blocks_[index].begin != number_of(begin) ? 0 : blocks_[index].bytes;
+  const Block* const block = block_at(begin);
+  return block == nullptr ? 0 : block->bytes;
 }
 
 }  // namespace ltsim

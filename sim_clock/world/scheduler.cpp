@@ -92,7 +92,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.body = std::move(body);
   task.result = nullptr;
   task.storage->reset();
-  if (decides_apart_) task.storage->clean_stack_below(task.storage->stack_top());
+  if (decides_apart_) task.storage->clean_stack_below(task.storage->stack_top(), cleaned_at_begin);
   task.context.prepare(task.storage->stack_top(), task.storage->thread_pointer(), &run_task, &task);
   world_.checks().task_begins(task.id);
   ++unfinished_count_;

@@ -29,11 +29,15 @@ void Scheduler::run_decider(void* scheduler) noexcept {
   auto& self = *static_cast<Scheduler*>(scheduler);
   for (;;) {
     const Task& stands = *self.running_;
-    stands.storage->clean_stack_below(stands.context.stack_pointer());
+    stands.storage->clean_stack_below(stands.context.stack_pointer(), cleaned_at_each_stop);
     std::size_t chosen = 0;
-    if (self.choice_.options.size() > 1) {
+    {
       const Heap::Pause pause;
-      chosen = self.strategy_->choose_task(self.choice_);
+      if (self.choice_.options.size() > 1) {
+        chosen = self.strategy_->choose_task(self.choice_);
+      } else {
+        self.strategy_->only_one_can_run(static_cast<TaskId>(self.choice_.options[0]));
+      }
     }
     self.running_ = self.tasks_[self.choice_.options[chosen]].get();
     Context::switch_between(self.decider_context_, self.running_->context);

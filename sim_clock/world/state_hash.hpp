@@ -1,6 +1,7 @@
 // A hash of memory that is the same wherever in the heap the code under test has its blocks.
 //
-// A word that holds an address in one of them (world/heap.hpp) goes in as that block's name and the distance from its begin. Of the
+// A word that holds an address in one of them (world/heap.hpp) goes in as that block's name and the distance from its begin; one in
+// a block that was freed, only as that. Of the
 // number of an execution, which the world writes into objects of its own, only whether it is this one goes in.
 #pragma once
 
@@ -19,7 +20,7 @@ class StateHash {
   static constexpr unsigned number_bits = 40;
 
   explicit StateHash(std::uint64_t execution_number) noexcept : execution_number_(execution_number) {
-    if (Heap::has_blocks()) {
+    if (Heap::is_listing() && !Heap::blocks().empty()) {
       heap_begin_ = Heap::blocks().front().begin;
       heap_bytes_ = Heap::blocks().back().begin + Heap::blocks().back().bytes - heap_begin_;
     }
@@ -31,8 +32,8 @@ class StateHash {
   void add_word(std::uint64_t word) noexcept {
     if (word - heap_begin_ <= heap_bytes_) [[unlikely]] {
       if (const Heap::Block* const block = Heap::find(word); block != nullptr) {
-        add(block->name ^ heap_mark);
-        add(word - block->begin);
+        add(block->is_freed ? freed_mark : block->name ^ heap_mark);
+        if (!block->is_freed) add(word - block->begin);
         return;
       }
     }
@@ -57,6 +58,7 @@ class StateHash {
 
  private:
   static constexpr std::uint64_t heap_mark = 0xb10c'0000'0000'0000U;
+  static constexpr std::uint64_t freed_mark = 0xb10c'ffff'ffff'ffffU;
   static constexpr std::uint64_t this_execution = 0xe8ec'0000'0000'0001U;
   static constexpr std::uint64_t an_earlier_execution = 0xe8ec'0000'0000'0000U;
 

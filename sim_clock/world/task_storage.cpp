@@ -140,10 +140,9 @@ void TaskStorage::add_state(StateHash& hash) const noexcept {
   hash.add_memory(base + errno_from_thread_pointer(), sizeof errno);
 }
 
-void TaskStorage::clean_stack_below(void* stack_pointer) const noexcept {
+void TaskStorage::clean_stack_below(void* stack_pointer, std::size_t bytes_max) const noexcept {
   constexpr std::size_t red_zone_bytes =
       128;  // System V ABI for x86-64, 3.2.2: in use, below the stack pointer
-  constexpr std::size_t bytes_max = 2048;
   char* const end = static_cast<char*>(stack_pointer) - red_zone_bytes;
   char* const lowest = static_cast<char*>(stack_base_) + guard_bytes;
   char* const begin = end - lowest > static_cast<std::ptrdiff_t>(bytes_max) ? end - bytes_max : lowest;

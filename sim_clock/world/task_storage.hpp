@@ -30,10 +30,11 @@ class TaskStorage {
   void reset() noexcept;
   /// All that reset() resets.
   void add_state(StateHash& hash) const noexcept;
-  /// Fills with zeros what lies below the stack pointer of a task that stands still: so much that what comes after finds few words
-  /// of what was called before.
+  /// Fills with zeros what lies below the stack pointer of a task that stands still: what comes after finds none of the words of what
+  /// was called before.
   /// @param stack_pointer  in the stack, or its top
-  void clean_stack_below(void* stack_pointer) const noexcept;
+  /// @param bytes_max      so much, or to the stack's end
+  void clean_stack_below(void* stack_pointer, std::size_t bytes_max) const noexcept;
   /// Whether the address lies in the stack or among the thread-locals.
   [[nodiscard]] bool contains(std::uintptr_t address) const noexcept;
 

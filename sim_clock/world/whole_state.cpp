@@ -5,6 +5,7 @@
 #include <span>
 
 #include "sim_clock/world/watched_writes.hpp"
+#include "sim_clock/world/wipe_stack.hpp"
 #include "sim_clock/world/world.hpp"
 
 // Set by the linker: the begin of the program's initialised variables, and the end of all its variables.
@@ -24,18 +25,13 @@ std::uintptr_t number_of(const void* address) noexcept { return reinterpret_cast
 constexpr std::size_t page_bytes = 4096;
 constexpr std::size_t line_bytes = 64;
 
+/// More than a scenario uses outside of its tasks.
+constexpr std::size_t stack_bytes = 32768;
+
 }  // namespace
 
-/// Below the caller's frame, where the scenario's will be.
-[[gnu::noinline]] void clean_stack() noexcept {
-  constexpr std::size_t bytes = 32768;
-  std::byte below[bytes];
-  std::memset(below, 0, bytes);
-  asm volatile("" : : "r"(below) : "memory");
-}
-
 void WholeState::run(const std::function<void(World&)>& scenario) {
-  clean_stack();
+  wipe_stack<stack_bytes>();
   // What callers keep in registers is none of the scenario's, and it would save them on its stack. The frame pointer is this
   // function's own.
   static_cast<void>(__builtin_frame_address(0));
@@ -75,6 +71,7 @@ std::uint64_t WholeState::hash() {
   // Where they lie does not matter, nor which lies before which.
   std::uint64_t blocks = 0;
   for (const Heap::Block& block : Heap::blocks()) {
+    if (block.is_freed) continue;
     StateHash of_block{world_.execution_number()};
     of_block.add(block.name);
     of_block.add(block.bytes);
@@ -107,13 +104,19 @@ void WholeState::add_variables(StateHash& hash) const noexcept {
   }
 }
 
+void WholeState::written_elsewhere(std::uintptr_t address) noexcept {
+  check_write(address);
+  wipe_stack<stack_bytes_of_ours>();
+}
+
 void WholeState::check_write(std::uintptr_t address) noexcept {
   const Scheduler& scheduler = world_.scheduler();
   // What is written before and after the tasks run is the same in each execution, or is looked at by nobody who is in it.
-  const Task* const running = scheduler.running();
-  if (running == nullptr || running->storage->contains(address)) return;
+  if (scheduler.running() == nullptr) return;
   const auto all = variables();
-  if (address - number_of(all.data()) < all.size() || Heap::find(address) != nullptr) return;
+  if (address - number_of(all.data()) < all.size()) return;
+  const Heap::Block* const block = Heap::find(address);
+  if (block != nullptr && !block->is_freed) return;
   if (Segments::contains(reinterpret_cast<const void*>(address))) return;
   if (address >= number_of(scheduler.main_stack_pointer()) && address < stack_end_) return;
   for (std::size_t i = 0; i < scheduler.tasks_count(); ++i) {

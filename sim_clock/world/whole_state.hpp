@@ -4,11 +4,12 @@
 // the heap blocks that were made since the execution began; the variables of the program; segments, semaphores, mutexes,
 // descriptors; the clock; faults that are still granted. What checks of a scenario keep is memory like any other.
 //
-// Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. So do
-// weak memory, whose histories do not go in, and one processor.
+// Memory that is none of these and that the code under test writes to would be missing: the execution ends as unsupported. Not for weak
+// memory, whose histories do not go in, nor for one processor (Prover refuses both).
 //
-// What does not go in, since it decides nothing: how many steps were taken; and what the race detector remembers. A race that shows
-// only on one of two ways into the same state may go unseen.
+// What does not go in: how many steps were taken, which decides nothing; what the race detector remembers, so a race that shows only
+// on one of two ways into the same state may go unseen; and which address the heap gives out next, so code that compares the address
+// of a freed block with that of another one in its place may go unseen.
 //
 // Words that the code does not need any more stay on stacks and in registers. They make two states of one, never one of two. The
 // stack below a task that stands still is filled with zeros, so there are few.
@@ -40,13 +41,16 @@ class WholeState {
   /// While every task stands still: Strategy::looks_at_states().
   [[nodiscard]] std::uint64_t hash();
 
-  /// Code under test, or a check of the scenario, is about to write there.
+  /// Code under test, or a check of the scenario, is about to write there. Or the search itself, which is paused then (Heap::Pause),
+  /// by a function that it and instrumented code have in common.
   static void written(const volatile void* address) noexcept {
-    if (active_ != nullptr) active_->check_write(reinterpret_cast<std::uintptr_t>(address));
+    if (active_ != nullptr && Heap::is_on())
+      active_->written_elsewhere(reinterpret_cast<std::uintptr_t>(address));
   }
 
  private:
   [[gnu::noinline]] void run_from_here(const std::function<void(World&)>& scenario);
+  void written_elsewhere(std::uintptr_t address) noexcept;
   void check_write(std::uintptr_t address) noexcept;
   void add_variables(StateHash& hash) const noexcept;
 

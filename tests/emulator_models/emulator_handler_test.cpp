@@ -10,6 +10,7 @@
 
 #include "emulator_models/fx_plc_emulator.hpp"
 #include "protocol/master_shared_memory_wrapper.hpp"
+#include "protocol/slave_shared_memory_wrapper.hpp"
 #include "tests/protocol/fx/worked_examples.hpp"
 #include "tests/protocol/test_segment.hpp"
 

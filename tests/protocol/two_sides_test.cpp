@@ -2,7 +2,6 @@
 // the published design is sound (no time-out fires, nobody is killed, fresh objects, one thread a side) every
 // request gets its own answer.
 
-#include <array>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -14,6 +13,7 @@
 #include "protocol/shared_memory_port.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
 #include "tests/protocol/test_segment.hpp"
+#include "tests/protocol/two_sides.hpp"
 
 namespace protocol {
 namespace {
@@ -26,22 +26,6 @@ PaperOptions patient_options() {
   options.read_timeout = 60s;
   options.poll_interval = 1us;
   return options;
-}
-
-void answer_until_stopped(SlaveSharedMemoryWrapper& slave) {
-  while (slave.wait_for_request()) slave.write_response(bytes("answer to " + text(slave.read_request())));
-}
-
-/// @return the first request that got another answer than its own, or -1
-int ask_in_turn(SerialPort& port, int requests_count) {
-  for (int number = 0; number < requests_count; ++number) {
-    const std::string request = "request " + std::to_string(number);
-    std::array<std::byte, 64> buffer{};
-    if (!port.write(bytes(request))) return number;
-    const auto count = port.read(buffer);
-    if (!count || text(std::span(buffer).first(*count)) != "answer to " + request) return number;
-  }
-  return -1;
 }
 
 TEST(TwoThreads, exchange_a_thousand_requests) {

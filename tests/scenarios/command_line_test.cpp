@@ -159,6 +159,33 @@ TEST_F(CommandLineTest, a_checkpoint_of_another_version_is_refused) {
   EXPECT_EQ(ltsim("prove paper/one-request --out . --anew").exit_code, 0);
 }
 
+TEST_F(CommandLineTest, prove_tells_states_apart) {
+  const Result settled = ltsim("prove races/stale-answer-modulo-1-corrected --states --silences any --out .");
+  EXPECT_EQ(settled.exit_code, 0);
+  EXPECT_NE(settled.output.find(" states in "), std::string::npos) << settled.output;
+  EXPECT_NE(settled.output.find("any number of preemptions and any number of silences, memory sc; 0 cut off"),
+            std::string::npos)
+      << settled.output;
+  const Result found =
+      ltsim("prove races/stale-answer-modulo-1 --states --silences any --minimize-seconds 0 --out .");
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_NE(found.output.find("invariant: I1: "), std::string::npos) << found.output;
+  EXPECT_EQ(ltsim("replay races-stale-answer-modulo-1.schedule").exit_code, 1);
+}
+
+TEST_F(CommandLineTest, prove_refuses_silences_that_are_no_number_or_without_end) {
+  const Result no_number = ltsim("prove paper/three-requests --states --silences 1.5");
+  EXPECT_EQ(no_number.exit_code, 2);
+  EXPECT_NE(no_number.output.find("\"1.5\" is no whole number, nor \"any\""), std::string::npos)
+      << no_number.output;
+  const Result negative = ltsim("prove paper/three-requests --states --silences=-1");
+  EXPECT_EQ(negative.exit_code, 2);
+  const Result without_end = ltsim("prove paper/three-requests --preemptions 1 --silences any");
+  EXPECT_EQ(without_end.exit_code, 2);
+  EXPECT_NE(without_end.output.find("--silences any needs --states"), std::string::npos)
+      << without_end.output;
+}
+
 TEST_F(CommandLineTest, prove_refuses_silences_without_a_bound_on_preemptions) {
   const Result result = ltsim("prove paper/three-requests --silences 1");
   EXPECT_EQ(result.exit_code, 2);

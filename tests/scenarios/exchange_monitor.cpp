@@ -10,48 +10,16 @@ namespace {
 
 using Use = AreaOwnership::Use;
 
-std::string hex(std::span<const std::byte> bytes) {
-  std::string text;
-  for (const std::byte byte : bytes)
-    text += fmt::format("{}{:02x}", text.empty() ? "" : " ", std::to_integer<unsigned>(byte));
-  return text.empty() ? "nothing" : text;
-}
-
-std::string_view to_string(protocol::ExchangeOutcome outcome) noexcept {
-  switch (outcome) {
-    case protocol::ExchangeOutcome::ok:
-      return "ok";
-    case protocol::ExchangeOutcome::rejected:
-      return "rejected";
-    case protocol::ExchangeOutcome::not_executed:
-      return "not executed";
-    case protocol::ExchangeOutcome::unknown:
-      return "unknown";
-  }
-  return "";
-}
-
 }  // namespace
-
-template <typename Text>
-void ExchangeMonitor::violated(std::initializer_list<std::string_view> invariants, const Text& text) {
-  if (!options_.only.empty() && std::ranges::find(invariants, options_.only) == invariants.end()) return;
-  std::string message{options_.only};
-  if (message.empty()) {
-    for (const std::string_view invariant : invariants) {
-      if (invariant.empty()) continue;
-      if (!message.empty()) message += ", ";
-      message += invariant;
-    }
-  }
-  message.append(": ").append(text());
-  const ltsim::GhostScope ghost;
-  world_.violated(std::move(message));
-}
 
 ExchangeMonitor::ExchangeMonitor(ltsim::World& world, const protocol::PaperOptions& paper,
                                  const Options& options)
-    : world_(world), paper_(paper), options_(options), ownership_(world), state_word_(paper.state_coding) {
+    : world_(world),
+      verdict_(world, options.only),
+      paper_(paper),
+      options_(options),
+      ownership_(world),
+      state_word_(paper.state_coding) {
   constexpr std::size_t usual_requests = 4;
   exchanges_.reserve(usual_requests);
   world_.whenever_idle([this] { check_when_idle(); });

@@ -39,6 +39,7 @@
 #include "sim_clock/world/world.hpp"
 #include "tests/scenarios/area_ownership.hpp"
 #include "tests/scenarios/state_word_ghost.hpp"
+#include "tests/scenarios/verdict.hpp"
 
 namespace scenarios {
 
@@ -101,11 +102,10 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   void check_when_idle();
   void check_state_word();
   void check_delivered(std::span<const std::byte> response, bool wiped_another);
-  /// @param invariants  that are broken; empty ones do not count
-  /// @param text        makes the rest of the message; called only if the monitor judges by one of them
-  /// Returns if it does not.
   template <typename Text>
-  void violated(std::initializer_list<std::string_view> invariants, const Text& text);
+  void violated(std::initializer_list<std::string_view> invariants, const Text& text) {
+    verdict_.violated(invariants, text);
+  }
   [[nodiscard]] const ltsim::Task& running() const noexcept;
   /// The request that the running task sent last.
   [[nodiscard]] std::size_t index_of_own() const noexcept;
@@ -113,6 +113,7 @@ class ExchangeMonitor final : public protocol::ExchangeObserver {
   [[nodiscard]] bool waits_for_answer(const Exchange& exchange) const noexcept;
 
   ltsim::World& world_;
+  Verdict verdict_;
   protocol::PaperOptions paper_;
   Options options_;
   std::vector<Exchange> exchanges_;      // request number 1 is exchanges_[0]

@@ -94,7 +94,7 @@ TEST(WeakMemory, breaks_the_handoff_in_some_execution_and_in_none_does_it_break_
   const auto strong = prove(*ltsim::find_scenario(shape.name), ltsim::Memory::sc);
   EXPECT_FALSE(strong.failure.has_value()) << strong.failure->outcome.message;
   EXPECT_TRUE(strong.complete);
-  EXPECT_EQ(strong.cut_off, 0U);
+  EXPECT_EQ(strong.counts.cut_off, 0U);
 }
 
 /// Whether one of the failures breaks the invariant: "I1, I4: ..." breaks I1 and I4.
@@ -185,7 +185,7 @@ TEST(Envelope, holds_in_every_execution_on_weak_memory_once_the_answer_is_ordere
   const auto proof = prove(scenario_of(exchange), ltsim::Memory::c11);
   EXPECT_FALSE(proof.failure.has_value()) << proof.failure->outcome.message;
   EXPECT_TRUE(proof.complete);
-  EXPECT_EQ(proof.cut_off, 0U);
+  EXPECT_EQ(proof.counts.cut_off, 0U);
 }
 
 struct Knob {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "emulator_models/emulator_handler.hpp"
-#include "emulator_models/i_plc_emulator.hpp"
 #include "protocol/shared_memory_port.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
+#include "tests/scenarios/mirror_plc.hpp"
 #include "tests/scenarios/segment_names.hpp"
 
 namespace scenarios {
@@ -19,16 +19,6 @@ using protocol::PaperOptions;
 
 constexpr const char* segment = "handoff";
 constexpr std::array emulator_names{"emulator", "second-emulator"};
-
-/// Answers with the request's bytes, the top bit of each set.
-class MirrorPlc final : public emulator_models::IPlcEmulator {
- public:
-  protocol::fx::FrameBytes process(std::span<const std::byte> request) noexcept override {
-    protocol::fx::FrameBytes answer;
-    for (const std::byte byte : request) answer.push_back(byte | std::byte{0x80});
-    return answer;
-  }
-};
 
 /// Request 1 is 11 12 13, request 2 is 21 22, request 3 is 31 32 33 ... up to 7: no part of one is a part of
 /// another, and two in a row differ in length.

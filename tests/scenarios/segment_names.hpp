@@ -9,8 +9,7 @@
 namespace scenarios {
 
 inline void name_regions(ltsim::World& world, std::string_view segment,
-                         const protocol::PaperOptions& options) {
-  const protocol::SegmentLayout layout = protocol::segment_layout(options);
+                         const protocol::SegmentLayout& layout) {
   const auto name = [&](std::size_t offset, std::size_t bytes, std::string_view region) {
     world.name_region(segment, static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(bytes), region);
   };
@@ -19,6 +18,11 @@ inline void name_regions(ltsim::World& world, std::string_view segment,
   name(layout.request.bytes_offset, layout.request.capacity_bytes, "segment.request");
   name(layout.response.length_offset, 4, "segment.response-length");
   name(layout.response.bytes_offset, layout.response.capacity_bytes, "segment.response");
+}
+
+inline void name_regions(ltsim::World& world, std::string_view segment,
+                         const protocol::PaperOptions& options) {
+  name_regions(world, segment, protocol::segment_layout(options));
 }
 
 }  // namespace scenarios

@@ -260,7 +260,7 @@ class ExhaustiveStrategyTest : public WorldTest {
       expect_same(plan, search(plan, {.preemptions = 1, .silences = silences, .looks = any_number}),
                   search(plan, {.preemptions = 1, .silences = silences, .states = true}));
     }
-    EXPECT_GT(compared, plans_count / 3);
+    EXPECT_GT(compared, plans_count / 4);
     EXPECT_LT(3 * executions_by_states, executions);
   }
 };
@@ -275,6 +275,60 @@ TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_a
 
 TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_apart_and_time_passes) {
   compare_with_states(std::nullopt, 4);
+}
+
+TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_states_are_told_apart_within_one_silence) {
+  compare_with_states(1, 6);
+}
+
+/// Tasks that hardly remember anything, so that many ways lead to one state.
+TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_where_many_ways_lead_to_one_state) {
+  constexpr unsigned programs_count = 100;
+  RandomGenerator generator{5};
+  std::uint64_t executions = 0;
+  std::uint64_t executions_by_states = 0;
+  for (unsigned i = 0; i < programs_count; ++i) {
+    std::array<std::vector<std::uint32_t>, 3> steps;
+    for (auto& of_task : steps) {
+      for (std::uint32_t count = 1 + generator.below(3); count != 0; --count)
+        of_task.push_back(generator.below(8));
+    }
+    std::set<std::string> results;
+    const Scenario scenario{.name = "test/forgetful", .description = "", .body = [&](World& of) {
+                              std::array<std::atomic<std::uint32_t>, 2> words{};
+                              for (std::size_t task = 0; task < steps.size(); ++task) {
+                                of.process("program").start(fmt::format("task-{}", task), [&, task] {
+                                  for (const std::uint32_t step : steps[task]) {
+                                    std::atomic<std::uint32_t>& word = words[step % 2];
+                                    if (step < 4) {
+                                      word.store(step / 2);
+                                    } else if (step < 6) {
+                                      word.store(words[1 - step % 2].load());
+                                    } else {
+                                      word.fetch_xor(1);
+                                    }
+                                  }
+                                });
+                              }
+                              of.run();
+                              results.insert(fmt::format("{} {}", words[0].load(), words[1].load()));
+                            }};
+    const auto search = [&](ProofBounds bounds) {
+      results.clear();
+      Explorer explorer{world()};
+      ExhaustiveStrategy strategy{world(), bounds};
+      std::uint64_t count = 1;
+      for (; static_cast<void>(explorer.execute(scenario, strategy, 0, nullptr)), strategy.advance();)
+        ++count;
+      EXPECT_EQ(strategy.trouble(), "");
+      return count;
+    };
+    executions += search({.preemptions = 1000});
+    const std::set<std::string> all = results;
+    executions_by_states += search({.preemptions = {}, .states = true});
+    EXPECT_EQ(results, all) << fmt::format("{}", fmt::join(steps, " || "));
+  }
+  EXPECT_LT(10 * executions_by_states, executions);
 }
 
 TEST_F(ExhaustiveStrategyTest, comes_to_the_same_results_on_weak_memory) { compare(Memory::c11, 2); }

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <ostream>
 #include <string>
@@ -73,6 +74,138 @@ TEST_F(ProverTest, without_a_bound_orders_that_make_no_difference_are_one) {
   EXPECT_EQ(prove([](World& world) { two_counters_of_their_own(world, 3); }).counts.executions, 1U);
 }
 
+ProveOptions by_states() {
+  ProveOptions options;
+  options.bounds = {.preemptions = {}, .silences = 0U, .states = true};
+  return options;
+}
+
+/// What is left of the way into a state, on stacks, in registers, in freed memory, does not make another state of it.
+TEST_F(ProverTest, states_are_as_few_as_they_are) {
+  constexpr std::uint32_t steps = 12;
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        start_tasks(of, 2, [&](std::uint32_t) {
+          for (std::uint32_t k = 0; k < steps; ++k) {
+            // Blocks of the heap lie elsewhere in each execution.
+            auto counter = std::make_unique<std::vector<std::uint32_t>>(k + 1, 0U);
+            counter->back() = word.fetch_xor(1);
+          }
+        });
+        of.run();
+        of.require(word.load() == 0, "an update is lost");
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.error, std::nullopt);
+  // How far each is, and what it has found last; of the 2.7 million ways there.
+  EXPECT_GE(report.states, (steps - 1) * (steps - 1));
+  EXPECT_LE(report.states, 6 * (steps + 1) * (steps + 1));
+}
+
+TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_told_apart) {
+  // Both tasks end in the same state whoever was first; only the check knows.
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        std::vector<std::uint32_t> order;
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          word.store(0);
+          order.push_back(i);
+        });
+        of.run();
+        of.require(order.front() == 0, "task-1 was first");
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "task-1 was first");
+}
+
+/// Once both have ended, only the semaphore knows which of them came first.
+TEST_F(ProverTest, a_token_that_was_left_is_another_state) {
+  const ProveReport report = prove(
+      [](World& of) {
+        std::array<Word, 2> done{};
+        of.leave_semaphore("tokens", 0);
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          sem_t* const tokens = sem_open("tokens", 0);
+          static_cast<void>(i == 0 ? sem_post(tokens) : sem_trywait(tokens));
+          done[i].store(1);
+        });
+        of.process("program").start("checker", [&] {
+          sem_t* const tokens = sem_open("tokens", 0);
+          if (done[0].load() == 0 || done[1].load() == 0) return;
+          int count = 0;
+          sem_getvalue(tokens, &count);
+          of.require(count == 0, "a token is left");
+        });
+        of.run();
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.message, "a token is left");
+}
+
+TEST_F(ProverTest, a_search_by_states_that_goes_on_says_that_it_has_runs) {
+  const Known program = last_zero(5);
+  const ProveReport whole = prove(program.body, by_states());
+  const ProveReport part = prove(program.body, by_states(), {}, 1);
+  ASSERT_FALSE(part.complete);
+  const auto read = parse_proof(to_proof(part, "test/proved", by_states()), "test/proved", by_states());
+  ASSERT_TRUE(read) << read.error();
+  const ProveReport rest = prove(program.body, by_states(), *read);
+  EXPECT_TRUE(rest.complete);
+  EXPECT_GE(rest.states, whole.states);
+  EXPECT_TRUE(describe_coverage(rest, by_states())
+                  .starts_with(fmt::format("all {} states, told apart in 2 runs, in {} executions",
+                                           rest.states, rest.counts.executions)));
+}
+
+TEST_F(ProverTest, a_task_that_polls_is_no_way_without_end_where_states_are_told_apart) {
+  const ProveReport report = prove(
+      [](World& of) {
+        Word word{0};
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          if (i == 1) {
+            word.store(1);
+          } else {
+            while (word.load() == 0) {
+            }
+          }
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.counts.cut_off, 0U);
+  EXPECT_EQ(report.counts.held_back, 0U);
+  EXPECT_LT(report.states, 20U);
+}
+
+TEST_F(ProverTest, memory_that_is_no_part_of_the_state_is_refused) {
+  const auto elsewhere = std::make_unique<std::uint32_t>(0);
+  const ProveReport report = prove(
+      [&](World& of) {
+        Word word{0};
+        *elsewhere = 0;
+        start_tasks(of, 2, [&](std::uint32_t i) {
+          word.store(i);
+          *elsewhere += i;
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_NE(report.error.value_or("").find("memory that does not belong"), std::string::npos);
+}
+
+TEST_F(ProverTest, states_of_weak_memory_are_refused) {
+  ProveOptions options = by_states();
+  options.memory = Memory::c11;
+  const ProveReport report = prove([](World& of) { two_counters_of_their_own(of, 2); }, options);
+  EXPECT_NE(report.error.value_or("").find("memory sc only"), std::string::npos);
+}
+
 TEST_F(ProverTest, the_first_failure_ends_the_search_and_can_be_replayed) {
   const auto lost_update = [](World& of) {
     Word word{0};
@@ -136,6 +269,13 @@ TEST_F(ProverTest, a_checkpoint_belongs_to_its_search) {
   weak.memory = Memory::c11;
   EXPECT_FALSE(parse_proof(file, "test/proved", weak));
   EXPECT_FALSE(parse_proof(file, "test/another", {}));
+  // Within equal bounds, too.
+  ProveOptions bounded;
+  bounded.bounds.preemptions = 1;
+  ProveOptions bounded_by_states = bounded;
+  bounded_by_states.bounds.states = true;
+  EXPECT_TRUE(parse_proof(to_proof(part, "test/proved", bounded), "test/proved", bounded));
+  EXPECT_FALSE(parse_proof(to_proof(part, "test/proved", bounded), "test/proved", bounded_by_states));
   EXPECT_FALSE(parse_proof("something else", "test/proved", {}));
   part.checkpoint = "nonsense\n";
   EXPECT_NE(prove(last_zero(1).body, {}, part).error, std::nullopt);
@@ -183,14 +323,19 @@ TEST_F(ProverTest, says_what_was_covered_and_no_more) {
   options.bounds = {.preemptions = 2, .silences = 1};
   options.memory = Memory::c11;
   EXPECT_EQ(describe_coverage(report, options),
-            "all 18432 executions with at most 2 preemptions and at most 1 silence, memory c11; 0 cut off");
+            "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off");
   report.counts.held_back = 7;
-  EXPECT_EQ(
-      describe_coverage(report, options),
-      "all 18432 executions with at most 2 preemptions and at most 1 silence, memory c11; 0 cut off; in 7 of "
-      "them a task that polled "
-      "waited for a change after 4 looks");
+  EXPECT_EQ(describe_coverage(report, options),
+            "all 18432 executions with at most 2 preemptions and 1 silence, memory c11; 0 cut off; in 7 of "
+            "them a task that polled "
+            "waited for a change after 4 looks");
   report.counts.held_back = 0;
+  report.states = 300;
+  options.bounds = {.preemptions = {}, .silences = std::nullopt, .states = true};
+  options.memory = Memory::sc;
+  EXPECT_EQ(describe_coverage(report, options),
+            "all 300 states in 18432 executions with any number of preemptions and any number of silences, "
+            "memory sc; 0 cut off");
   report.complete = false;
   report.counts.executions = 1;
   options = {};

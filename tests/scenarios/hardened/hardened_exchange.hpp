@@ -1,0 +1,33 @@
+// The hardened handoff in a world: a kernel that calls through a hardened::Master, an emulator that serves with the
+// EmulatorHandler. Production code on both sides; the PLC behind it is a mirror.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "protocol/hardened/options.hpp"
+#include "sim_clock/world/world.hpp"
+
+namespace scenarios {
+
+/// What is done, and under which circumstances. Payloads fill two copies of eight bytes in part, so that each area can
+/// be seen half written.
+struct HardenedExchange {
+  enum class TimeOuts : bool { never, as_set };
+
+  protocol::hardened::Options options = {};  ///< areas have room for 16 bytes, whatever they say
+  TimeOuts time_outs = TimeOuts::as_set;     ///< never: both are an hour
+  unsigned requests = 1;                     ///< of each life of the kernel, one after the other
+  unsigned kernel_kills = 0;                 ///< at any step, and started again 5 ms later
+  unsigned emulator_kills = 0;
+  unsigned odd_rings = 0;  ///< so many posts count twice, and so many waits end by a signal
+  /// The state word that a former life has left; 0: a fresh segment.
+  std::uint32_t word = 0;
+  std::string_view only = {};  ///< the invariant to judge by, data races aside; empty: all
+};
+
+/// After its requests the kernel makes one more, with an hour for each time-out: whatever happened before, it must end
+/// ok.
+void run_hardened_exchange(ltsim::World& world, const HardenedExchange& exchange);
+
+}  // namespace scenarios

@@ -1,0 +1,108 @@
+// Watches one hardened exchange between a kernel and an emulator, both sides at once, and ends the execution when an
+// invariant breaks.
+//
+// Ghost state, kept from the events alone: what each request and each answer was, who executed and delivered what, and
+// the state word as its moves make it. No two requests are alike, nor two answers, so bytes tell to which request they
+// belong; a checksum that is right proves nothing here. The invariants are numbered as in protocol/README.md.
+//
+//   I1   an answer is delivered for the request it answers
+//   I2   a request gets at most one answer, an answer is delivered at most once
+//   I3   what is executed is a request that was submitted, whole
+//   I4   what is delivered is an answer that was given, whole
+//   I5   no request is executed twice
+//   I6   what the kernel was told is not executed, is not, before and after
+//   I7   of two that use an area at once neither writes, and who uses it is its owner by the state word
+//   I9   nobody sleeps on a doorbell that was rung for him
+//   I14  each change of the state word is in the table, and undoes no other
+//   I17  a fresh request with time to spare ends ok, whatever happened before
+//   I18  each request ends exactly once; unknown and rejected only for their reasons
+//
+// I8 and I10 are asked of the world (run_hardened_exchange). A monitor may be told to judge by one invariant only.
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include <boost/container/static_vector.hpp>
+
+#include "protocol/exchange_observer.hpp"
+#include "sim_clock/world/world.hpp"
+#include "tests/scenarios/area_ownership.hpp"
+#include "tests/scenarios/hardened/word_ghost.hpp"
+#include "tests/scenarios/verdict.hpp"
+
+namespace scenarios {
+
+class HardenedMonitor final : public protocol::ExchangeObserver {
+ public:
+  /// @param master_process  the events of every other process are the slave's
+  /// @param only            the invariant to judge by, "I4"; empty: all
+  /// @param word            what is in the segment when the world begins
+  HardenedMonitor(ltsim::World& world, std::string_view master_process, std::string_view only,
+                  std::uint32_t word);
+
+  /// The request that is submitted next has time to spare: it must end ok, unless a slave is killed meanwhile.
+  void next_has_time_to_spare() noexcept { has_time_to_spare_ = true; }
+  /// After World::run(): what only the end can show.
+  void check_at_end();
+
+  void submitted(std::span<const std::byte> request) noexcept override;
+  void filling() noexcept override;
+  void published() noexcept override;
+  void taken() noexcept override;
+  void executed(std::span<const std::byte> request) noexcept override;
+  void answered(std::span<const std::byte> response) noexcept override;
+  void accepted() noexcept override;
+  void delivered(std::span<const std::byte> response) noexcept override;
+  void ended(protocol::ExchangeOutcome outcome) noexcept override;
+  void attached() noexcept override;
+  void moved(std::uint32_t from, std::uint32_t to) noexcept override;
+
+ private:
+  /// The longest message that is watched.
+  static constexpr std::size_t message_bytes_max = 16;
+  using Bytes = boost::container::static_vector<std::byte, message_bytes_max>;
+  using Phase = HardenedWordGhost::Phase;
+
+  struct Exchange {
+    Bytes request;
+    Bytes answer;
+    ltsim::TaskId task = 0;  // that sent it
+    bool has_time_to_spare = false;
+    bool was_given_up = false;       // in BUSY
+    bool slave_has_changed = false;  // one has attached, or was killed, since it was submitted
+    bool was_told_not_executed = false;
+    unsigned crashes_before = 0;
+    unsigned executed_count = 0;
+    unsigned delivered_count = 0;
+    unsigned ended_count = 0;
+  };
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  void check_when_idle();
+  void check_owner(std::initializer_list<Phase> phases, std::string_view use);
+  void uses(AreaOwnership::Use use);
+  void check_ended(const Exchange& exchange, protocol::ExchangeOutcome outcome);
+  [[nodiscard]] bool is_master() const;
+  [[nodiscard]] bool is_alive(ltsim::TaskId task) const;
+  [[nodiscard]] unsigned slave_crashes() const;
+  template <typename Text>
+  void violated(std::initializer_list<std::string_view> invariants, const Text& text) {
+    verdict_.violated(invariants, text);
+  }
+
+  ltsim::World& world_;
+  Verdict verdict_;
+  ltsim::Process& master_;
+  ltsim::Process* slave_ = nullptr;  // once it has attached
+  HardenedWordGhost word_;
+  AreaOwnership ownership_;
+  std::vector<Exchange> exchanges_;  // request number 1 is exchanges_[0]
+  std::size_t executing_ = none;     // index
+  ltsim::TaskId slave_task_ = 0;
+  bool has_time_to_spare_ = false;
+};
+
+}  // namespace scenarios
