@@ -48,6 +48,8 @@ class ExchangeObserver {
 
   /// ATTACH, hardened: who reports it plays his role from here on, and the state word says so.
   virtual void attached() noexcept {}
+  /// DETACH, hardened: who reports it is about to give his role back.
+  virtual void detaching() noexcept {}
   /// MOVE, hardened: who reports it has just put one state word in the place of another.
   virtual void moved(std::uint32_t /*from*/, std::uint32_t /*to*/) noexcept {}
 

@@ -38,6 +38,7 @@ tl::expected<void, SharedMemoryError> Master::open() noexcept {
 void Master::close() noexcept {
   if (!is_open()) return;
   give_up_at_once();
+  observer().detaching();
   close_objects();
 }
 

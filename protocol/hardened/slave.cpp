@@ -35,6 +35,7 @@ void Slave::close() noexcept {
     if (found.phase != Phase::idle && found.phase != Phase::request) break;
     if (move(found, found.in(Phase::down), std::memory_order_relaxed)) break;
   }
+  observer().detaching();
   close_objects();
 }
 

@@ -38,6 +38,10 @@ class Faults {
   /// The kind may strike `times` times more often in this execution. Crashes are granted to a process,
   /// Process::may_crash().
   void grant(FaultKind kind, unsigned times) noexcept { left(kind) += times; }
+  /// How often it can still strike in this execution; of crashes, over all processes.
+  [[nodiscard]] std::uint32_t times_left(FaultKind kind) const noexcept {
+    return left_[static_cast<std::size_t>(kind)];
+  }
   void grant_crashes(ProcessId process, CrashGrant grant) noexcept;
   void grant_stalls(ProcessId process, unsigned times) noexcept;
 

@@ -53,6 +53,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
   idle_checks_.clear();
+  held_up_notes_.clear();
 }
 
 Task& Scheduler::create_task(ProcessId process, std::string_view name, std::function<void()> body) {
@@ -353,7 +354,12 @@ void Scheduler::nobody_can_run() noexcept {
     const GhostScope ghost;
     fail(OutcomeKind::deadlock, describe_deadlock(world_));
   }
-  clock_.pass(std::max(clock_.next_deadline() - clock_.now(), SimTime{0}));
+  const SimTime until_next = std::max(clock_.next_deadline() - clock_.now(), SimTime{0});
+  if (stalled_count_ == 0) {
+    clock_.pass(until_next);
+  } else {
+    pass_held_up(until_next);
+  }
   wake_due();
 }
 
@@ -385,10 +391,17 @@ SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
                                 .under_way = under_way_});
     if (moment.duration == SimTime{0}) return {};
     if (moment.others_go_on) return moment;
-    clock_.pass(moment.duration);
+    pass_held_up(moment.duration);
     wake_due();
   }
   return {};
+}
+
+void Scheduler::pass_held_up(SimTime duration) noexcept {
+  clock_.pass(duration);
+  if (held_up_notes_.empty()) return;
+  const GhostScope ghost;
+  for (const auto& note : held_up_notes_) note(duration);
 }
 
 void Scheduler::choose_slow_moment() noexcept {

@@ -61,6 +61,7 @@ class Scheduler {
   /// Called, outside the simulated world, each time that every task waits of its own accord, before time
   /// moves on.
   void add_idle_check(std::function<void()> check) { idle_checks_.push_back(std::move(check)); }
+  void add_held_up_note(std::function<void(SimTime)> note) { held_up_notes_.push_back(std::move(note)); }
 
   /// Runs the tasks until all have finished or the execution has failed. Tasks that have not finished are
   /// dropped where they stand: nothing is unwound.
@@ -188,6 +189,8 @@ class Scheduler {
   /// Asks how slow the machine is, and lets time pass for all as long as it is slow.
   /// @return a slow moment of the running task alone that is to follow; duration 0: none
   SlowMoment let_time_pass(bool running_can_be_held_up) noexcept;
+  /// Somebody could go on meanwhile.
+  void pass_held_up(SimTime duration) noexcept;
   /// Whether the task waits for others, though it can run.
   [[nodiscard]] static bool gives_way(Task& task, Operation operation) noexcept;
   /// An execution that will not end is given a fair end: tasks take turns, nobody is slow, no fault strikes. What does
@@ -274,6 +277,7 @@ class Scheduler {
   bool is_abandoned_ = false;
   Outcome outcome_;
   std::vector<std::function<void()>> idle_checks_;
+  std::vector<std::function<void(SimTime)>> held_up_notes_;
 };
 
 }  // namespace ltsim

@@ -197,6 +197,10 @@ class World {
   /// moves on. It may call violated().
   void whenever_idle(std::function<void()> check) { scheduler_.add_idle_check(std::move(check)); }
 
+  /// Calls `note` with how much time has just passed each time that it passes although some task could go on: the processor
+  /// was slow for it. What a time-out that fires then says of the peer is no fault of the peer's.
+  void whenever_held_up(std::function<void(SimTime)> note) { scheduler_.add_held_up_note(std::move(note)); }
+
   /// Two accesses to a segment that nothing orders, one of them plain and one a write, are a failure of their
   /// own (data-race) in an execution that does not fail otherwise. Not in this one: the scenario is about what
   /// comes of them.

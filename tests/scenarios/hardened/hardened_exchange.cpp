@@ -1,6 +1,7 @@
 #include "tests/scenarios/hardened/hardened_exchange.hpp"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <span>
@@ -25,6 +26,7 @@ namespace hardened = protocol::hardened;
 
 constexpr const char* segment = "handoff";
 constexpr std::size_t payload_bytes_max = 16;
+constexpr auto time_to_spare = 5s;  // for each stage of a call
 
 hardened::Options options_of(const HardenedExchange& exchange) {
   hardened::Options options = exchange.options;
@@ -50,54 +52,99 @@ class HardenedSides {
       : world_{world},
         exchange_{exchange},
         options_{options_of(exchange)},
-        emulator_{world.process("emulator")},
-        monitor_{world, "kernel", exchange.only, exchange.word} {}
+        monitor_{world, "kernel", exchange.only, exchange.word, options_},
+        kernels_to_come_{exchange.has_rivals ? 2U : 1U} {}
 
   void run_kernel() {
-    while (!emulator_is_up_) std::this_thread::sleep_for(1ms);
-    if (!kernel_has_finished_) {
+    if (!exchange_.opens_together) wait_for_emulator();
+    if (kernels_to_come_ != 0) {
       hardened::Master master{segment, options_, &monitor_};
-      if (!master.open()) return cannot_open();
+      if (!open(master)) return;
+      wait_for_emulator();
+      monitor_.set_timeouts(options_.take_timeout, options_.answer_timeout);
       for (unsigned i = 0; i < exchange_.requests; ++i) ask(master);
-      master.set_timeouts(1h, 1h);
-      // Each emulator may be killed with such a request in its hands.
-      for (unsigned i = 0; i <= exchange_.emulator_kills; ++i) {
-        monitor_.next_has_time_to_spare();
-        if (ask(master) == ExchangeOutcome::ok) break;
-      }
+      ask_with_time_to_spare(master);
     }
-    kernel_has_finished_ = true;
+    if (kernels_to_come_ != 0) --kernels_to_come_;
   }
 
   void operate() {
     do {
       std::this_thread::sleep_for(50ms);  // the machine stays on for a while
-    } while (!kernel_has_finished_);
+    } while (kernels_to_come_ != 0);
+    if (exchange_.lost_rings != 0) world_.finish();  // the ring of a stop could be lost, too
     stopped_ = true;
-    if (handler_ != nullptr && serving_life_ == emulator_.incarnation()) handler_->request_stop();
+    stop_emulator();
+  }
+
+  void stop_emulator_once() {
+    wait_for_emulator();
+    stop_emulator();
   }
 
   void run_emulator() {
-    if (stopped_) return;
-    MirrorPlc plc;
-    hardened::Slave slave{segment, options_, &monitor_};
-    emulator_models::EmulatorHandler handler{slave, plc};
-    if (!slave.open()) return cannot_open();
-    handler_ = &handler;
-    serving_life_ = emulator_.incarnation();
-    if (stopped_) return;
-    emulator_is_up_ = true;
-    handler.run();
-    handler_ = nullptr;
+    while (!stopped_) {
+      MirrorPlc plc;
+      hardened::Slave slave{segment, options_, &monitor_};
+      emulator_models::EmulatorHandler handler{slave, plc};
+      if (!open(slave)) return;
+      handler_ = &handler;
+      serving_task_ = ltsim::current_task->id;
+      if (!stopped_) {
+        emulator_is_up_.exchange(1, std::memory_order_release);
+        handler.run();
+        emulator_is_up_.exchange(0, std::memory_order_relaxed);
+      }
+      handler_ = nullptr;
+      while (stops_under_way_ != 0) std::this_thread::sleep_for(1ms);
+    }
   }
 
   void check_at_end() { monitor_.check_at_end(); }
 
  private:
-  void cannot_open() {
-    stopped_ = true;
-    kernel_has_finished_ = true;
-    world_.violated("I28, I29: a side cannot open the segment");
+  void wait_for_emulator() {
+    while (emulator_is_up_.fetch_add(0, std::memory_order_acquire) == 0 && kernels_to_come_ != 0)
+      std::this_thread::sleep_for(1ms);
+  }
+
+  /// @return false: it is over
+  template <class Side>
+  bool open(Side& side) {
+    for (;;) {
+      const auto opened = side.open();
+      if (opened) return true;
+      if (exchange_.has_rivals && opened.error() == protocol::SharedMemoryError::role_taken) {
+        if (stopped_) return false;
+        std::this_thread::sleep_for(5ms);
+        continue;
+      }
+      stopped_ = true;
+      kernels_to_come_ = 0;
+      world_.violated("I28, I29: a side cannot open the segment");
+      return false;
+    }
+  }
+
+  /// Nothing is to come in the way of the last of these requests: each kill, each stop and each ring that is lost can be in the
+  /// way of one.
+  void ask_with_time_to_spare(hardened::Master& master) {
+    master.set_timeouts(time_to_spare, time_to_spare);
+    monitor_.set_timeouts(time_to_spare, time_to_spare);
+    const unsigned stops = exchange_.emulator_stops ? 1 : 0;
+    for (unsigned excuses = exchange_.emulator_kills + stops + exchange_.lost_rings;; --excuses) {
+      wait_for_emulator();
+      monitor_.next_has_time_to_spare();
+      if (ask(master) == ExchangeOutcome::ok || excuses == 0) return;
+    }
+  }
+
+  void stop_emulator() {
+    if (handler_ == nullptr || world_.scheduler().task(serving_task_).state == ltsim::Task::State::killed)
+      return;
+    ++stops_under_way_;
+    handler_->request_stop();
+    --stops_under_way_;
   }
 
   /// Request n is so many bytes n: no part of one is a part of another, and two in a row differ in length.
@@ -112,13 +159,15 @@ class HardenedSides {
   ltsim::World& world_;
   const HardenedExchange& exchange_;
   hardened::Options options_;
-  ltsim::Process& emulator_;
   HardenedMonitor monitor_;
   emulator_models::EmulatorHandler* handler_ = nullptr;
-  unsigned serving_life_ = 0;
+  ltsim::TaskId serving_task_ = 0;
+  unsigned stops_under_way_ = 0;  // the handler must outlive them
   unsigned next_request_ = 1;
-  bool emulator_is_up_ = false;
-  bool kernel_has_finished_ = false;
+  unsigned kernels_to_come_;
+  /// Atomic: what the emulator did before it came up, the kernel sees that was told of it. Changed and looked at by
+  /// read-modify-writes alone, which see what is so now.
+  std::atomic<std::uint32_t> emulator_is_up_ = 0;
   bool stopped_ = false;
 };
 
@@ -139,12 +188,20 @@ void run_hardened_exchange(ltsim::World& world, const HardenedExchange& exchange
   length_is_loaded_once(layout.request, "segment.request-length");
   length_is_loaded_once(layout.response, "segment.response-length");
   // I10, with the ring of the operator's stop, and of the emulator's first attach.
-  world.bound_semaphore(std::string{segment} + ".request", 1 + 1 + exchange.odd_rings);
+  const unsigned stops = exchange.emulator_stops ? 1 : 0;
+  const unsigned emulators = exchange.has_rivals ? 2 : 1;
+  world.bound_semaphore(std::string{segment} + ".request", 1 + 1 + stops + exchange.odd_rings);
   world.bound_semaphore(std::string{segment} + ".response",
-                        2 + 1 + exchange.emulator_kills + exchange.odd_rings);
+                        2 + emulators + exchange.emulator_kills + stops + exchange.odd_rings);
   if (exchange.odd_rings != 0) {
     world.grant(ltsim::FaultKind::doubled_post, exchange.odd_rings);
     world.grant(ltsim::FaultKind::interrupt, exchange.odd_rings);
+  }
+  if (exchange.lost_rings != 0) world.grant(ltsim::FaultKind::lost_post, exchange.lost_rings);
+  if (exchange.clock_steps != 0) world.grant(ltsim::FaultKind::clock_step, exchange.clock_steps);
+  if (exchange.foreign_writes != 0) {
+    world.grant_in(ltsim::FaultKind::foreign_write, segment, 0, static_cast<std::uint32_t>(layout.size_bytes),
+                   exchange.foreign_writes);
   }
   // What races where a rule is missing is known; what comes of it is looked for.
   if (!exchange.only.empty()) world.allow_data_races();
@@ -158,6 +215,11 @@ void run_hardened_exchange(ltsim::World& world, const HardenedExchange& exchange
     if (exchange.kernel_kills == 0) sides.operate();
   });
   emulator.start("main", [&] { sides.run_emulator(); });
+  if (exchange.emulator_stops) emulator.start("stopper", [&] { sides.stop_emulator_once(); });
+  if (exchange.has_rivals) {
+    kernel.start("rival", [&] { sides.run_kernel(); });
+    world.process("standby").start("main", [&] { sides.run_emulator(); });
+  }
   if (exchange.kernel_kills != 0) {
     // Nobody would stop the emulator if the operator were killed with the kernel.
     world.process("operator").start("main", [&] { sides.operate(); });

@@ -17,15 +17,20 @@ const ltsim::Task& running() noexcept { return *ltsim::current_task; }
 }  // namespace
 
 HardenedMonitor::HardenedMonitor(ltsim::World& world, std::string_view master_process, std::string_view only,
-                                 std::uint32_t word)
+                                 std::uint32_t word, const protocol::hardened::Options& options)
     : world_(world),
       verdict_(world, only),
       master_(world.process(master_process)),
       word_(word),
-      ownership_(world) {
+      ownership_(world),
+      queries_max_(options.queries_max),
+      take_timeout_(options.take_timeout),
+      answer_timeout_(options.answer_timeout),
+      losses_granted_(losses_left()) {
   constexpr std::size_t usual_requests = 8;
   exchanges_.reserve(usual_requests);
   world_.whenever_idle([this] { check_when_idle(); });
+  world_.whenever_held_up([this](ltsim::SimTime duration) { held_up_ += duration; });
 }
 
 void HardenedMonitor::submitted(std::span<const std::byte> request) noexcept {
@@ -34,11 +39,16 @@ void HardenedMonitor::submitted(std::span<const std::byte> request) noexcept {
                         .task = running().id,
                         .has_time_to_spare = std::exchange(has_time_to_spare_, false),
                         .crashes_before = slave_crashes()});
+  submitted_at_ = attempt_began_at_ = now();
+  held_up_ = ltsim::SimTime{0};
+  losses_left_ = losses_left();
   world_.note([&] { return fmt::format("SUBMIT {}: {}", exchanges_.size(), hex(request)); });
 }
 
 void HardenedMonitor::filling() noexcept {
-  check_owner({Ghost::idle}, "writes the request");
+  check_role("writes the request");
+  // A slave that stops while the area is filled does not touch it, and the publication fails.
+  check_owner({Ghost::idle, Ghost::down}, "writes the request");
   uses(Use::writes_request);
 }
 
@@ -49,6 +59,7 @@ void HardenedMonitor::published() noexcept {
 
 void HardenedMonitor::taken() noexcept {
   world_.note([] { return "TAKE"; });
+  check_role("reads the request");
   check_owner({Ghost::busy, Ghost::orphan}, "reads the request");
   uses(Use::reads_request);
 }
@@ -78,6 +89,7 @@ void HardenedMonitor::executed(std::span<const std::byte> request) noexcept {
 
 void HardenedMonitor::answered(std::span<const std::byte> response) noexcept {
   world_.note([&] { return fmt::format("ANSWER {}", hex(response)); });
+  check_role("writes the response");
   check_owner({Ghost::busy, Ghost::orphan}, "writes the response");
   ownership_.leaves(running().id);
   if (executing_ != none) exchanges_[executing_].answer.assign(response.begin(), response.end());
@@ -85,6 +97,7 @@ void HardenedMonitor::answered(std::span<const std::byte> response) noexcept {
 }
 
 void HardenedMonitor::accepted() noexcept {
+  check_role("reads the response");
   check_owner({Ghost::response}, "reads the response");
   uses(Use::reads_response);
 }
@@ -141,7 +154,17 @@ void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
   if (outcome == Outcome::rejected)
     violated({"I18"},
              [&] { return fmt::format("request {} was rejected, and nothing is wrong with it", number); });
-  if (exchange.has_time_to_spare && outcome != Outcome::ok && !slave_has_changed) {
+  const ltsim::SimTime took = now() - submitted_at_;
+  const ltsim::SimTime for_an_attempt = take_timeout_ + answer_timeout_;
+  if (took > for_an_attempt * (1 + queries_max_) + held_up_ + time_to_react) {
+    violated({"I15"}, [&] {
+      return fmt::format("request {} took {} ns, of which {} were held up", number, took.count(),
+                         held_up_.count());
+    });
+  }
+  const bool had_its_time = held_up_ + time_to_react < std::min(take_timeout_, answer_timeout_);
+  const bool is_excused = slave_has_changed || a_ring_was_lost();
+  if (exchange.has_time_to_spare && had_its_time && !is_excused && outcome != Outcome::ok) {
     violated({"I17"}, [&] {
       return fmt::format("request {} had time to spare, and ended {}", number, to_string(outcome));
     });
@@ -151,11 +174,25 @@ void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
 void HardenedMonitor::attached() noexcept {
   const bool is_of_master = is_master();
   world_.note([&] { return fmt::format("ATTACH {}", is_of_master ? "master" : "slave"); });
+  Holder& holder = own_role();
+  if (holder.holds && holder.task != running().id && is_alive(holder.task)) {
+    violated({"I28"}, [&] {
+      return fmt::format("{} attaches to a role that {} plays", running().name,
+                         world_.scheduler().task(holder.task).name);
+    });
+  }
+  holder = {.task = running().id, .holds = true};
   if (is_of_master) return;
   slave_ = &world_.process(running().process);
   slave_task_ = running().id;
   executing_ = none;
   if (!exchanges_.empty() && exchanges_.back().ended_count == 0) exchanges_.back().slave_has_changed = true;
+}
+
+void HardenedMonitor::detaching() noexcept {
+  const bool is_of_master = is_master();
+  world_.note([&] { return fmt::format("DETACH {}", is_of_master ? "master" : "slave"); });
+  own_role().holds = false;
 }
 
 void HardenedMonitor::moved(std::uint32_t from, std::uint32_t to) noexcept {
@@ -165,8 +202,23 @@ void HardenedMonitor::moved(std::uint32_t from, std::uint32_t to) noexcept {
   // The swap that the running task has just made; between it and this event lies no other step.
   if (world_.segments().value_at(world_.scheduler().pending(running())) != to)
     violated({"I14"}, [] { return std::string{"the state word is not what it was made"}; });
-  if (is_master() && Ghost::phase_of(from) == Ghost::busy && !exchanges_.empty())
-    exchanges_.back().was_given_up = true;
+  if (Ghost::generation_of(from) != Ghost::generation_of(to)) return;  // an attach
+  check_role("moves the state word");
+  if (exchanges_.empty()) return;
+  Exchange& last = exchanges_.back();
+  if (!is_master()) {
+    if (Ghost::phase_of(to) == Ghost::down) last.slave_has_changed = true;
+    return;
+  }
+  if (Ghost::phase_of(from) == Ghost::request) {
+    check_early(take_timeout_, "was withdrawn");
+    attempt_began_at_ = now();
+  }
+  if (Ghost::phase_of(from) == Ghost::busy) {
+    check_early(take_timeout_ + answer_timeout_, "was given up");
+    attempt_began_at_ = now();
+    last.was_given_up = true;
+  }
 }
 
 void HardenedMonitor::check_at_end() {
@@ -182,7 +234,7 @@ void HardenedMonitor::check_when_idle() {
     const ltsim::Task& sleeper = world_.scheduler().task(task);
     return sleeper.state == ltsim::Task::State::blocked && world_.scheduler().pending(sleeper).kind == kind;
   };
-  if (exchanges_.empty() || slave_ == nullptr || !is_alive(slave_task_)) return;
+  if (exchanges_.empty() || a_ring_was_lost() || slave_ == nullptr || !is_alive(slave_task_)) return;
   const ltsim::TaskId sender = exchanges_.back().task;
   // Who was killed between a move and the ring that follows has not rung; the next one who attaches sees to that.
   if (!is_alive(sender)) return;
@@ -199,6 +251,32 @@ void HardenedMonitor::check_when_idle() {
     });
   }
 }
+
+void HardenedMonitor::check_role(std::string_view what) {
+  const Holder& holder = own_role();
+  if (holder.holds && holder.task == running().id) return;
+  violated({"I12"}, [&] { return fmt::format("{} {}, and does not hold its role", running().name, what); });
+}
+
+void HardenedMonitor::check_early(ltsim::SimTime full, std::string_view what) {
+  const ltsim::SimTime passed = now() - attempt_began_at_;
+  if (passed >= full) return;
+  violated({"I16"}, [&] {
+    return fmt::format("request {} {} after {} ns, and its time is {} ns", exchanges_.size(), what,
+                       passed.count(), full.count());
+  });
+}
+
+std::uint32_t HardenedMonitor::losses_left() const noexcept {
+  return world_.faults().times_left(ltsim::FaultKind::lost_post);
+}
+
+bool HardenedMonitor::a_ring_was_lost() const noexcept {
+  const bool is_weak = world_.memory() != ltsim::Memory::sc;
+  return losses_left() != (is_weak ? losses_granted_ : losses_left_);
+}
+
+ltsim::SimTime HardenedMonitor::now() const noexcept { return world_.now(); }
 
 void HardenedMonitor::check_owner(std::initializer_list<Phase> phases, std::string_view use) {
   if (std::ranges::find(phases, word_.phase()) != phases.end()) return;

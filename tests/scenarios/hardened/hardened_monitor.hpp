@@ -12,14 +12,20 @@
 //   I5   no request is executed twice
 //   I6   what the kernel was told is not executed, is not, before and after
 //   I7   of two that use an area at once neither writes, and who uses it is its owner by the state word
-//   I9   nobody sleeps on a doorbell that was rung for him
+//   I9   nobody sleeps on a doorbell that was rung for him, unless that ring was lost
+//   I12  who moves the state word or uses an area holds his role
 //   I14  each change of the state word is in the table, and undoes no other
-//   I17  a fresh request with time to spare ends ok, whatever happened before
+//   I15  a call ends within its time-outs, once for each attempt, but for the time for which somebody was held up
+//   I16  no time-out before its full time has passed
+//   I17  a fresh request with time to spare ends ok, whatever happened before; unless somebody was held up for all of it, or a
+//        ring was lost; with weak memory also before it: a ring is what makes a store visible in time
 //   I18  each request ends exactly once; unknown and rejected only for their reasons
+//   I28  nobody attaches to a role that somebody else plays
 //
 // I8 and I10 are asked of the world (run_hardened_exchange). A monitor may be told to judge by one invariant only.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <initializer_list>
 #include <string_view>
@@ -28,6 +34,7 @@
 #include <boost/container/static_vector.hpp>
 
 #include "protocol/exchange_observer.hpp"
+#include "protocol/hardened/options.hpp"
 #include "sim_clock/world/world.hpp"
 #include "tests/scenarios/area_ownership.hpp"
 #include "tests/scenarios/hardened/word_ghost.hpp"
@@ -40,10 +47,16 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
   /// @param master_process  the events of every other process are the slave's
   /// @param only            the invariant to judge by, "I4"; empty: all
   /// @param word            what is in the segment when the world begins
+  /// @param options         of the master
   HardenedMonitor(ltsim::World& world, std::string_view master_process, std::string_view only,
-                  std::uint32_t word);
+                  std::uint32_t word, const protocol::hardened::Options& options);
 
-  /// The request that is submitted next has time to spare: it must end ok, unless a slave is killed meanwhile.
+  /// As Master::set_timeouts().
+  void set_timeouts(ltsim::SimTime take, ltsim::SimTime answer) noexcept {
+    take_timeout_ = take;
+    answer_timeout_ = answer;
+  }
+  /// The request that is submitted next has time to spare: it must end ok, unless a slave is killed or stops meanwhile.
   void next_has_time_to_spare() noexcept { has_time_to_spare_ = true; }
   /// After World::run(): what only the end can show.
   void check_at_end();
@@ -58,6 +71,7 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
   void delivered(std::span<const std::byte> response) noexcept override;
   void ended(protocol::ExchangeOutcome outcome) noexcept override;
   void attached() noexcept override;
+  void detaching() noexcept override;
   void moved(std::uint32_t from, std::uint32_t to) noexcept override;
 
  private:
@@ -72,7 +86,7 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
     ltsim::TaskId task = 0;  // that sent it
     bool has_time_to_spare = false;
     bool was_given_up = false;       // in BUSY
-    bool slave_has_changed = false;  // one has attached, or was killed, since it was submitted
+    bool slave_has_changed = false;  // one has attached, has stopped, or was killed, since it was submitted
     bool was_told_not_executed = false;
     unsigned crashes_before = 0;
     unsigned executed_count = 0;
@@ -80,8 +94,23 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
     unsigned ended_count = 0;
   };
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  /// What a call may need besides its time-outs: steps of all tasks, and a pause between two looks in each stage.
+  static constexpr ltsim::SimTime time_to_react = std::chrono::milliseconds{20};
+
+  /// Who plays a role; nobody at first.
+  struct Holder {
+    ltsim::TaskId task = 0;
+    bool holds = false;
+  };
 
   void check_when_idle();
+  void check_role(std::string_view what);
+  void check_early(ltsim::SimTime full, std::string_view what);
+  [[nodiscard]] Holder& own_role() { return is_master() ? master_holder_ : slave_holder_; }
+  [[nodiscard]] ltsim::SimTime now() const noexcept;
+  [[nodiscard]] std::uint32_t losses_left() const noexcept;
+  /// That can be in the way of the request that was submitted last.
+  [[nodiscard]] bool a_ring_was_lost() const noexcept;
   void check_owner(std::initializer_list<Phase> phases, std::string_view use);
   void uses(AreaOwnership::Use use);
   void check_ended(const Exchange& exchange, protocol::ExchangeOutcome outcome);
@@ -103,6 +132,17 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
   std::size_t executing_ = none;     // index
   ltsim::TaskId slave_task_ = 0;
   bool has_time_to_spare_ = false;
+  unsigned queries_max_;
+  ltsim::SimTime take_timeout_;
+  ltsim::SimTime answer_timeout_;
+  // Of the request that was submitted last.
+  ltsim::SimTime submitted_at_{0};
+  ltsim::SimTime attempt_began_at_{0};  // or before
+  ltsim::SimTime held_up_{0};           // since it was submitted
+  std::uint32_t losses_left_ = 0;       // of rings, when it was submitted
+  std::uint32_t losses_granted_;
+  Holder master_holder_;
+  Holder slave_holder_;
 };
 
 }  // namespace scenarios

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/scenarios/hardened/word_ghost.hpp"
@@ -14,6 +18,7 @@
 
 namespace {
 
+using namespace std::chrono_literals;
 using scenarios::HardenedMonitor;
 using scenarios::HardenedWordGhost;
 using Outcome = protocol::ExchangeOutcome;
@@ -27,10 +32,14 @@ class HardenedMonitorTest : public ltsim::WorldTest {
  protected:
   /// What the monitor says of these events, if it judges by this invariant alone.
   static std::string verdict(std::string_view only, const std::function<void(HardenedMonitor&)>& events) {
-    std::optional<HardenedMonitor> monitor;
     ltsim::DefaultStrategy strategy;
+    return verdict_under(strategy, only, events);
+  }
+  static std::string verdict_under(ltsim::Strategy& strategy, std::string_view only,
+                                   const std::function<void(HardenedMonitor&)>& events) {
+    std::optional<HardenedMonitor> monitor;
     world().reset(strategy, nullptr);
-    monitor.emplace(world(), "kernel", only, 0);
+    monitor.emplace(world(), "kernel", only, 0, protocol::hardened::Options{});
     world().process("kernel").start("main", [&] { events(*monitor); });
     world().run();
     monitor->check_at_end();
@@ -148,6 +157,89 @@ TEST_F(HardenedMonitorTest, names_a_request_that_had_time_to_spare_and_did_not_e
                       monitor.ended(Outcome::not_executed);
                     }),
             "I17: request 1 had time to spare, and ended not executed");
+}
+
+TEST_F(HardenedMonitorTest, names_who_does_not_hold_his_role) {
+  EXPECT_EQ(verdict("I12", [](HardenedMonitor& monitor) { monitor.filling(); }),
+            "I12: kernel/main writes the request, and does not hold its role");
+  EXPECT_EQ(verdict("I12",
+                    [](HardenedMonitor& monitor) {
+                      monitor.attached();
+                      monitor.filling();
+                      monitor.detaching();
+                      monitor.accepted();
+                    }),
+            "I12: kernel/main reads the response, and does not hold its role");
+}
+
+TEST_F(HardenedMonitorTest, names_who_attaches_to_a_role_that_is_played) {
+  const auto rival_attaches = [](bool after_the_first_has_detached) {
+    return verdict("I28", [&](HardenedMonitor& monitor) {
+      monitor.attached();
+      if (after_the_first_has_detached) monitor.detaching();
+      std::thread{[&] { monitor.attached(); }}.join();
+    });
+  };
+  EXPECT_EQ(rival_attaches(false), "I28: kernel/thread-1 attaches to a role that kernel/main plays");
+  EXPECT_EQ(rival_attaches(true), "");
+}
+
+TEST_F(HardenedMonitorTest, names_a_call_that_takes_longer_than_its_time_outs) {
+  const auto takes = [](std::chrono::nanoseconds time) {
+    return verdict("I15", [&](HardenedMonitor& monitor) {
+      monitor.set_timeouts(1ms, 2ms);
+      ask(monitor, "1");
+      std::this_thread::sleep_for(time);
+      monitor.ended(Outcome::not_executed);
+    });
+  };
+  // Two attempts of three milliseconds each, and twenty to react.
+  EXPECT_EQ(takes(25ms), "");
+  EXPECT_EQ(takes(27ms).substr(0, 19), "I15: request 1 took");
+}
+
+TEST_F(HardenedMonitorTest, names_a_time_out_before_its_time) {
+  using Ghost = HardenedWordGhost;
+  const auto word_in = [](Ghost::Phase phase) { return 1U << 16U | 1U << 3U | phase; };
+  const auto gives_up = [&](std::chrono::nanoseconds after, Ghost::Phase from, Ghost::Phase to) {
+    return verdict("I16", [&](HardenedMonitor& monitor) {
+      monitor.set_timeouts(1ms, 2ms);
+      ask(monitor, "1");
+      std::this_thread::sleep_for(after);
+      monitor.moved(word_in(from), word_in(to));
+    });
+  };
+  EXPECT_EQ(gives_up(900us, Ghost::request, Ghost::idle).substr(0, 32), "I16: request 1 was withdrawn aft");
+  EXPECT_EQ(gives_up(1ms, Ghost::request, Ghost::idle), "");
+  EXPECT_EQ(gives_up(2900us, Ghost::busy, Ghost::orphan).substr(0, 30), "I16: request 1 was given up af");
+  EXPECT_EQ(gives_up(3ms, Ghost::busy, Ghost::orphan), "");
+}
+
+TEST_F(HardenedMonitorTest, excuses_a_request_for_all_of_whose_time_somebody_was_held_up) {
+  /// Time passes for all, once.
+  class Slow final : public ltsim::DefaultStrategy {
+   public:
+    explicit Slow(ltsim::SimTime duration) : duration_(duration) {}
+    ltsim::SlowMoment slow_moment(const ltsim::SlowMomentChoice&) noexcept override {
+      return {.duration = std::exchange(duration_, ltsim::SimTime{0})};
+    }
+
+   private:
+    ltsim::SimTime duration_;
+  };
+  const auto held_up_for = [](std::chrono::nanoseconds duration) {
+    Slow strategy{duration};
+    return verdict_under(strategy, "I17", [](HardenedMonitor& monitor) {
+      monitor.set_timeouts(1s, 1s);
+      monitor.next_has_time_to_spare();
+      ask(monitor, "1");
+      while (std::chrono::steady_clock::now().time_since_epoch() < 500ms) {
+      }
+      monitor.ended(Outcome::not_executed);
+    });
+  };
+  EXPECT_EQ(held_up_for(1s), "");
+  EXPECT_EQ(held_up_for(900ms), "I17: request 1 had time to spare, and ended not executed");
 }
 
 TEST_F(HardenedMonitorTest, names_an_end_that_is_none_or_comes_twice_or_has_no_reason) {

@@ -76,6 +76,22 @@ constexpr std::array set_ups{
            .kernel_kills = 1,
            .emulator_kills = 1,
            .word = encode(StateWord{Phase::busy, 7, 7})}},
+    SetUp{"hardened/opened-together",
+          "both sides make the segment at the same time; each is killed once",
+          {.requests = 1, .kernel_kills = 1, .emulator_kills = 1, .opens_together = true}},
+    SetUp{"hardened/rivals",
+          "a second kernel and a second emulator wait for their role; time-outs; the emulator is killed once",
+          {.requests = 1, .emulator_kills = 1, .has_rivals = true}},
+    SetUp{"hardened/emulator-stops",
+          "the emulator stops in an orderly way, and is started again; the kernel is killed once",
+          {.requests = 2, .kernel_kills = 1, .emulator_stops = true}},
+    SetUp{"hardened/lost-rings", "two requests, time-outs; posts are lost", {.requests = 2, .lost_rings = 2}},
+    SetUp{"hardened/clock-steps",
+          "two requests, time-outs; the wall clock is set, forward and back; the emulator is killed once",
+          {.requests = 2, .emulator_kills = 1, .clock_steps = 3}},
+    SetUp{"hardened/foreign-writes",
+          "somebody else writes into the segment: nothing is executed that was not submitted",
+          {.requests = 2, .emulator_kills = 1, .foreign_writes = 4, .only = "I3"}},
 };
 
 template <std::size_t index>
