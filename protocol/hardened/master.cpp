@@ -205,8 +205,7 @@ CallResult Master::judge(const std::optional<std::span<const std::byte>>& messag
     case Status::rejected:
     case Status::wrong_slave:
       // Of a query this says nothing about the attempt before it.
-      if (exchange_->is_query)
-        return header.status == Status::wrong_slave ? unknown(SharedMemoryError::slave_gone) : damaged;
+      if (exchange_->is_query) return damaged;
       return {.outcome = ExchangeOutcome::rejected, .why = SharedMemoryError::rejected};
     case Status::answer_too_long:
       return damaged;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "protocol/hardened/master.hpp"
+#include "protocol/hardened/named_memory.hpp"
 #include "protocol/hardened/slave.hpp"
 #include "protocol/shared_memory_port.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
@@ -95,6 +96,8 @@ TEST_P(ServedSegmentTest, with_a_kernel_attached_is_joined) {
 
 TEST_P(ServedSegmentTest, of_the_other_handoff_with_a_kernel_attached_is_refused_and_left_alone) {
   leave_over(other());
+  const auto memory = hardened::NamedMemory::identity_of(name());
+  ASSERT_TRUE(memory);
   ASSERT_TRUE(kernel_.try_lock());
   {
     ServedSegment served{name(), options_of(GetParam())};
@@ -104,6 +107,7 @@ TEST_P(ServedSegmentTest, of_the_other_handoff_with_a_kernel_attached_is_refused
                                                  ", or choose another name"));
   }
   EXPECT_EQ(found(), other());
+  EXPECT_EQ(hardened::NamedMemory::identity_of(name()), memory);
   protocol::RoleLock emulator{name(), protocol::Role::emulator};
   EXPECT_TRUE(emulator.try_lock()) << "nobody serves it";
 }

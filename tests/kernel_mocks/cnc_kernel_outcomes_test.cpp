@@ -96,7 +96,7 @@ class CncKernelOutcomes : public testing::Test {
 
   /// As a killed one: what it has taken stays taken.
   test_support::ShellResult run_with_one_that_dies_before_its_answer_to(const Which& request,
-                                                                        const std::string& options = "") {
+                                                                        const std::string& options) {
     return run_with([&](Slave& first) { return serve_until(first, request, false); }, options);
   }
   /// The request after that one is there, and nobody takes it.
@@ -117,6 +117,9 @@ class CncKernelOutcomes : public testing::Test {
   std::vector<Request> executed_;
 };
 
+/// A busy machine is no reason for a repetition.
+const std::string patient = "--take-timeout-ms 20000";
+
 constexpr const char* in_doubt =
     "cnc-kernel: in doubt: write 1 byte from M96 on: the one that had taken the message ended, or was "
     "started anew, "
@@ -126,14 +129,12 @@ constexpr const char* in_doubt =
 
 TEST_F(CncKernelOutcomes,
        stops_and_tells_the_request_when_a_strobe_may_have_been_seen_and_does_not_repeat_it) {
-  for (const std::string options : {"", "--polling helper"}) {
+  for (const std::string polling : {"direct", "helper"}) {
     executed_.clear();
-    const auto ended = run_with_one_that_dies_before_its_answer_to(raises_mf, options);
+    const auto ended =
+        run_with_one_that_dies_before_its_answer_to(raises_mf, patient + " --polling " + polling);
     EXPECT_EQ(ended.exit_code, 1);
-    EXPECT_NE(ended.output.find(
-                  "block N10 (line 1), M8: the link to the PLC failed: nobody knows whether the PLC has "
-                  "executed a request\n"),
-              std::string::npos)
+    EXPECT_NE(ended.output.find("block N10 (line 1), M8: the link to the PLC failed: "), std::string::npos)
         << ended.output;
     EXPECT_TRUE(ended.output.ends_with(in_doubt)) << ended.output;
     EXPECT_EQ(executed(raises_mf), 1);
@@ -142,7 +143,7 @@ TEST_F(CncKernelOutcomes,
 }
 
 TEST_F(CncKernelOutcomes, repeats_a_read_that_may_have_been_executed_and_goes_on) {
-  const auto ended = run_with_one_that_dies_before_its_answer_to(reads_status);
+  const auto ended = run_with_one_that_dies_before_its_answer_to(reads_status, patient);
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
   EXPECT_EQ(ended.output.find("in doubt"), std::string::npos) << ended.output;
   EXPECT_NE(ended.output.find(" 1 retries, 1 time-outs"), std::string::npos) << ended.output;
@@ -163,7 +164,7 @@ TEST_F(CncKernelOutcomes, removes_the_segment_when_the_emulator_has_ended_before
         static_cast<void>(serve_until(first, raises_mf, true));
         return false;
       },
-      "--take-timeout-ms 1 --retries 0");
+      "--take-timeout-ms 300 --retries 1");
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_NE(ended.output.find("the PLC did not take the request, which was not executed"), std::string::npos)
       << ended.output;

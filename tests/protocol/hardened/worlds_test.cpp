@@ -380,6 +380,17 @@ TEST_F(KilledEmulator, with_a_request_that_was_given_up_leaves_its_outcome_unkno
   EXPECT_THAT(play.executed, ElementsAre("A"));
 }
 
+TEST_F(KilledEmulator, with_a_query_that_it_has_not_taken_leaves_the_outcome_unknown) {
+  plan.options.take_timeout = 30ms;
+  plan.options.answer_timeout = 50ms;
+  plan.execution_time = 100ms;
+  plan.emulator_sleeps_after = 1min;
+  // The first ring was for the request. By the next emulator the query is dropped, which says nothing of the request.
+  run_killing("emulator", "kernel/main before sem_post handoff.request #2");
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, slave gone"));
+  EXPECT_THAT(play.executed, ElementsAre("A"));
+}
+
 TEST_F(KilledEmulator, after_its_answer_has_answered) {
   run_killing("emulator", "emulator/main before sem_post handoff.response #2");
   EXPECT_THAT(play.outcomes, ElementsAre("ok: to A"));
