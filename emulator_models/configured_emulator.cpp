@@ -53,8 +53,9 @@ class Ports {
     if (pty_) pty_->request_stop();
     if (handler_) handler_->request_stop();
     for (std::thread& thread : threads_) thread.join();
-    if (segment_ && segment_->kernel_is_attached())
-      complain("a kernel is still attached; it has to be started again to find the next emulator");
+    if (segment_) {
+      if (const std::string told = segment_->at_the_end(); !told.empty()) complain(told);
+    }
   }
 
   /// @return an exit code; exit_ended: all that is asked for is served
@@ -64,7 +65,7 @@ class Ports {
       return exit_own_fault;
     }
     if (!options.segment_name.empty()) {
-      const auto found = segment_.emplace(options.segment_name, options.paper).open();
+      const auto found = segment_.emplace(options.segment_name, options.handoff.options()).open();
       if (!found || !found->empty()) complain(found ? *found : found.error());
       if (!found) return exit_usage;
       handler_.emplace(segment_->slave(), plc_);

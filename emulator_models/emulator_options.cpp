@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "protocol/paper_command_line.hpp"
-
 namespace emulator_models {
 void add_options(CLI::App& app, EmulatorOptions& options) {
   app.add_option("--segment", options.segment_name, "Serve the shared-memory segment of this name");
@@ -54,7 +52,7 @@ void add_options(CLI::App& app, EmulatorOptions& options) {
       ->needs(archive);
   app.add_flag("--watch", options.watch,
                "Show the PLC's memory live; a line for each change when the output is not a terminal");
-  protocol::add_paper_options(app, options.paper, protocol::PaperSide::emulator);
+  protocol::add_handoff_options(app, options.handoff, protocol::HandoffSide::emulator);
   app.footer("Exit codes: 0 ended by a signal, 2 bad usage or a segment that cannot be had, 3 own fault.");
 }
 

@@ -8,7 +8,7 @@
 #include "emulator_models/archive/fx_archive.hpp"
 #include "emulator_models/plant_choice.hpp"
 #include "protocol/fx/address_map.hpp"
-#include "protocol/paper_options.hpp"
+#include "protocol/handoff_command_line.hpp"
 
 namespace CLI {
 class App;
@@ -28,7 +28,7 @@ struct EmulatorOptions {
   unsigned watchdog_ms = 200;         ///< D8000 at power-up
   bool cold = false;                  ///< each start of RUN clears latched devices, too
   archive::FxArchiveOptions archive;
-  protocol::PaperOptions paper;
+  protocol::HandoffArguments handoff;
 };
 
 /// @param options  filled when the command line is parsed; must outlive the parsing

@@ -123,7 +123,7 @@ int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::P
   std::optional<ServedSegment> segment;
   std::optional<EmulatorHandler> handler;
   if (!options.segment_name.empty()) {
-    const auto found = segment.emplace(options.segment_name, options.paper).open();
+    const auto found = segment.emplace(options.segment_name, options.handoff.options()).open();
     if (!found) return complain(exit_usage, found.error());
     if (!found->empty()) complain(exit_ended, *found);
     handler.emplace(segment->slave(), port);
@@ -165,8 +165,9 @@ int serve(const EmulatorOptions& options, const LoadedProgram& program, FxPlc::P
   if (archive) complain(exit_ended, archive->stop(std::chrono::steady_clock::now()));
   if (pty_thread.joinable()) pty_thread.join();
   if (handler_thread.joinable()) handler_thread.join();
-  if (segment && segment->kernel_is_attached())
-    complain(exit_ended, "a kernel is still attached; it has to be started again to find the next emulator");
+  if (segment) {
+    if (const std::string told = segment->at_the_end(); !told.empty()) complain(exit_ended, told);
+  }
   return exit_ended;
 }
 

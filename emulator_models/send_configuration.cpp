@@ -7,9 +7,10 @@
 
 #include "emulator_models/configuration_sender.hpp"
 #include "emulator_models/soft_plc/plc_configuration.hpp"
+#include "protocol/handoff.hpp"
 #include "protocol/posix_serial_port.hpp"
 #include "protocol/role_lock.hpp"
-#include "protocol/shared_memory_port.hpp"
+#include "protocol/shared_memory_port_manager.hpp"
 
 namespace emulator_models {
 namespace {
@@ -49,11 +50,17 @@ int send_to_segment(const std::string& path, const EmulatorOptions& options) {
         locked.error() == protocol::RoleLockError::held_by_other
             ? fmt::format("{}: a kernel is attached. Stop it, or send over the line (--pty)", where)
             : fmt::format("{}: {}", where, to_string(locked.error())));
+  const protocol::HandoffOptions handoff = options.handoff.options();
   // Opening would create what is missing, and leave behind a segment that nobody serves.
-  if (!protocol::SharedMemoryWrapper::exists(options.segment_name))
-    return give_up(fmt::format("no PLC on {}: there is no such segment", where));
-  protocol::SharedMemoryPort port{options.segment_name, options.paper};
-  return send(path, port, where);
+  if (const std::string why = protocol::why_no_plc(options.segment_name, handoff); !why.empty())
+    return give_up(fmt::format("no PLC on {}: {}", where, why));
+  protocol::SharedMemoryPortManager ports{handoff};
+  const auto port = ports.port(options.segment_name);
+  if (!port) return give_up(fmt::format("{}: {}", where, to_string(port.error())));
+  const int code = send(path, **port, where);
+  (*port)->close();
+  protocol::remove_if_unused(options.segment_name, handoff);
+  return code;
 }
 
 }  // namespace

@@ -24,10 +24,10 @@
 #include "kernel_mocks/part_program_file.hpp"
 #include "kernel_mocks/part_program_runner.hpp"
 #include "kernel_mocks/polled_link.hpp"
+#include "protocol/handoff.hpp"
 #include "protocol/posix_port_manager.hpp"
 #include "protocol/role_lock.hpp"
 #include "protocol/shared_memory_port_manager.hpp"
-#include "protocol/shared_memory_wrapper.hpp"
 
 namespace {
 
@@ -63,11 +63,31 @@ void stop_on_signals() {
   }}.detach();
 }
 
+/// Tells why a run did not reach its end.
+/// @return the exit code
+int tell_end(const std::string& file, const RunResult& result) {
+  switch (result.outcome) {
+    case RunOutcome::ended:
+      return exit_ended;
+    case RunOutcome::stopped:
+      return complain(exit_stopped,
+                      fmt::format("{}: {}; nobody is there to press cycle start, so the run ends "
+                                  "here. --continue-at-m0 goes on",
+                                  file, result.message));
+    case RunOutcome::refused:
+    case RunOutcome::failed:
+      return complain(exit_stopped, fmt::format("{}: {}", file, result.message));
+  }
+  return exit_own_fault;
+}
+
 int run_program(const Program& program, const CommandLine& arguments, protocol::fx::Model model,
-                protocol::SerialPort& port, const std::string& where, const std::string& no_plc_hint) {
+                protocol::SerialPort& port, std::chrono::nanoseconds send_timeout, const std::string& where,
+                const std::string& no_plc_hint) {
   FxDriver driver{port,
                   {.model = model,
                    .answer_timeout = std::chrono::milliseconds{arguments.read_timeout_ms},
+                   .send_timeout = send_timeout,
                    .retries = arguments.retries,
                    .enq_wait = std::chrono::milliseconds{arguments.enq_wait_ms},
                    .request_wait = std::chrono::milliseconds{arguments.request_wait_ms}}};
@@ -109,23 +129,18 @@ int run_program(const Program& program, const CommandLine& arguments, protocol::
              counters.retries, counters.time_outs);
   if (arguments.table) fmt::print("{}", report.table().to_text());
   std::fflush(stdout);
-  switch (result.outcome) {
-    case RunOutcome::ended:
-      return exit_ended;
-    case RunOutcome::stopped:
-      return complain(exit_stopped,
-                      fmt::format("{}: {}; nobody is there to press cycle start, so the run ends "
-                                  "here. --continue-at-m0 goes on",
-                                  arguments.file, result.message));
-    case RunOutcome::refused:
-    case RunOutcome::failed:
-      return complain(exit_stopped, fmt::format("{}: {}", arguments.file, result.message));
+  const int code = tell_end(arguments.file, result);
+  if (driver.request_in_doubt()) {
+    complain(code,
+             fmt::format("in doubt: {}. It may have been executed, and is not sent again: look what the "
+                         "machine has done, and reset it before the next program",
+                         to_string(*driver.request_in_doubt())));
   }
-  return exit_own_fault;
+  return code;
 }
 
-int run_on_segment(const Program& program, CommandLine arguments, protocol::fx::Model model) {
-  const std::string start_hint = fmt::format("Start one: plc-emulator --segment {}", arguments.segment);
+int run_on_segment(const Program& program, const CommandLine& arguments, protocol::fx::Model model) {
+  const protocol::HandoffOptions handoff = arguments.handoff.options();
   const std::string where = fmt::format("segment '{}'", arguments.segment);
   protocol::RoleLock role{arguments.segment, protocol::Role::kernel};
   if (const auto locked = role.try_lock(); !locked) {
@@ -134,24 +149,26 @@ int run_on_segment(const Program& program, CommandLine arguments, protocol::fx::
                                       : fmt::format("{}: {}", where, to_string(locked.error())));
   }
   // Opening would create what is missing, and leave behind a segment that nobody serves.
-  if (!protocol::SharedMemoryWrapper::exists(arguments.segment)) {
-    return complain(exit_stopped,
-                    fmt::format("no PLC on {}: there is no such segment. {}", where, start_hint));
-  }
-  arguments.paper.read_timeout = std::chrono::milliseconds{arguments.read_timeout_ms};
-  protocol::SharedMemoryPortManager ports{arguments.paper};
+  if (const std::string why = protocol::why_no_plc(arguments.segment, handoff); !why.empty())
+    return complain(exit_stopped, fmt::format("no PLC on {}: {}", where, why));
+  protocol::SharedMemoryPortManager ports{handoff};
   const auto port = ports.port(arguments.segment);
   if (!port) return complain(exit_stopped, fmt::format("{}: {}", where, to_string(port.error())));
-  return run_program(
-      program, arguments, model, **port, where,
-      fmt::format("If one is running, it was started with other options or hangs. {}", start_hint));
+  const int code =
+      run_program(program, arguments, model, **port, arguments.handoff.hardened.take_timeout, where,
+                  fmt::format("If one is running, it was started with other options or hangs. Start one: {}",
+                              protocol::emulator_command(arguments.segment, handoff)));
+  (*port)->close();
+  protocol::remove_if_unused(arguments.segment, handoff);
+  return code;
 }
 
 int run_on_device(const Program& program, const CommandLine& arguments, protocol::fx::Model model) {
   protocol::PosixPortManager ports{{.baud_rate = arguments.baud_rate}};
   const auto port = ports.port(arguments.device);
   if (!port) return complain(exit_stopped, fmt::format("{}: {}", arguments.device, to_string(port.error())));
-  return run_program(program, arguments, model, **port, arguments.device,
+  return run_program(program, arguments, model, **port, std::chrono::milliseconds{arguments.read_timeout_ms},
+                     arguments.device,
                      "Check the cable and the device path, or start an emulator: plc-emulator --pty");
 }
 

@@ -22,7 +22,10 @@ void add_options(CLI::App& app, CommandLine& arguments) {
   app.add_option("--read-timeout-ms", arguments.read_timeout_ms, "Longest wait for an answer of the PLC")
       ->check(CLI::Range(1, 3'600'000))
       ->capture_default_str();
-  app.add_option("--retries", arguments.retries, "Repetitions of a request without a good answer")
+  app.add_option("--retries", arguments.retries,
+                 "Repetitions of a request without a good answer; never of one that sets something and may "
+                 "have been\n"
+                 "executed, where the port can tell")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   app.add_option("--fin-timeout-ms", arguments.fin_timeout_ms, "Longest wait for FIN")
@@ -78,7 +81,7 @@ void add_options(CLI::App& app, CommandLine& arguments) {
   app.add_option("--baud", arguments.baud_rate, "Bits per second of the serial device")
       ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
-  protocol::add_paper_options(app, arguments.paper, protocol::PaperSide::kernel);
+  protocol::add_handoff_options(app, arguments.handoff, protocol::HandoffSide::kernel);
   app.footer(
       "Exit codes: 0 ran to its end, 1 stopped or refused, 2 bad usage or unreadable program, 3 own fault.");
 }

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "kernel_mocks/part_program_runner.hpp"
-#include "protocol/paper_command_line.hpp"
+#include "protocol/handoff_command_line.hpp"
 
 namespace kernel_mocks {
 
@@ -31,7 +31,7 @@ struct CommandLine {
   std::string machine_table;
   std::string operator_script;
   unsigned baud_rate = 9600;
-  protocol::PaperOptions paper;
+  protocol::HandoffArguments handoff;
 };
 
 /// @param arguments  filled when `app` parses; must outlive it

@@ -5,6 +5,8 @@
 #include <optional>
 #include <thread>
 
+#include <fmt/format.h>
+
 namespace kernel_mocks {
 namespace {
 
@@ -30,6 +32,8 @@ std::size_t bytes_max(AddressSpace space) noexcept {
   return space == AddressSpace::legacy ? protocol::fx::data_bytes_max_legacy
                                        : protocol::fx::data_bytes_max_wide;
 }
+
+bool is_read(Command command) noexcept { return command == Command::read || command == Command::read_wide; }
 
 }  // namespace
 
@@ -59,8 +63,28 @@ std::string_view to_string(FxDriverError error) noexcept {
       return "the answer of the PLC is of another kind than the request wants";
     case FxDriverError::surplus_bytes:
       return "more than one answer came to one request";
+    case FxDriverError::not_executed:
+      return "the PLC did not take the request, which was not executed";
+    case FxDriverError::outcome_unknown:
+      return "nobody knows whether the PLC has executed a request";
   }
   return "unknown error";
+}
+
+std::string to_string(const RequestInDoubt& in_doubt) {
+  const std::string device = protocol::fx::to_string(in_doubt.device);
+  const std::string_view reason = to_string(in_doubt.reason);
+  switch (in_doubt.command) {
+    case Command::force_on:
+    case Command::force_on_wide:
+      return fmt::format("force {} on: {}", device, reason);
+    case Command::force_off:
+    case Command::force_off_wide:
+      return fmt::format("force {} off: {}", device, reason);
+    default:
+      return fmt::format("write {} {} from {} on: {}", in_doubt.count_bytes,
+                         in_doubt.count_bytes == 1 ? "byte" : "bytes", device, reason);
+  }
 }
 
 FxDriver::FxDriver(protocol::SerialPort& port, const FxDriverOptions& options)
@@ -68,18 +92,19 @@ FxDriver::FxDriver(protocol::SerialPort& port, const FxDriverOptions& options)
 
 tl::expected<void, FxDriverError> FxDriver::connect() noexcept {
   if (!port_.is_open()) {
-    if (const auto opened = port_.open(); !opened) return port_failed(opened.error());
+    if (const auto opened = port_.open(); !opened) return failed(opened.error());
   }
-  port_.set_timeouts({.read = options_.answer_timeout, .write = options_.answer_timeout});
+  port_.set_timeouts({.read = options_.answer_timeout, .write = options_.send_timeout});
   line_is_clean_ = false;
   ++counters_.requests;
   constexpr std::array frame{protocol::fx::enq};
   FxDriverError last = FxDriverError::no_answer;
   for (unsigned attempt = 0; attempt < options_.enq_tries; ++attempt) {
-    if (attempt > 0) ++counters_.retries;
+    if (attempt > 0) repeat(last);
     const auto answered = try_once(frame, {});
     if (answered) return {};
-    last = answered.error();
+    // ENQ changes nothing.
+    last = answered.error() == FxDriverError::outcome_unknown ? FxDriverError::no_answer : answered.error();
     if (last == FxDriverError::port_failed) break;
   }
   return tl::unexpected{last};
@@ -89,7 +114,8 @@ tl::expected<void, FxDriverError> FxDriver::read_bytes(Device first, std::span<s
   const auto place = place_of(first, options_.model, protocol::fx::byte_address);
   if (!place) return tl::unexpected{FxDriverError::not_reachable};
   if (into.empty() || into.size() > bytes_max(place->space)) return tl::unexpected{FxDriverError::bad_length};
-  return request({.command = place->space == AddressSpace::wide ? Command::read_wide : Command::read,
+  return request(first,
+                 {.command = place->space == AddressSpace::wide ? Command::read_wide : Command::read,
                   .address = place->address,
                   .count_bytes = static_cast<std::uint8_t>(into.size()),
                   .data = {}},
@@ -103,7 +129,8 @@ tl::expected<void, FxDriverError> FxDriver::write_bytes(Device first,
   if (bytes.empty() || bytes.size() > bytes_max(place->space)) {
     return tl::unexpected{FxDriverError::bad_length};
   }
-  return request({.command = place->space == AddressSpace::wide ? Command::write_wide : Command::write,
+  return request(first,
+                 {.command = place->space == AddressSpace::wide ? Command::write_wide : Command::write,
                   .address = place->address,
                   .count_bytes = static_cast<std::uint8_t>(bytes.size()),
                   .data = protocol::fx::DataBytes(bytes.begin(), bytes.end())},
@@ -116,7 +143,7 @@ tl::expected<void, FxDriverError> FxDriver::force(Device device, bool on) noexce
   const bool wide = place->space == AddressSpace::wide;
   const Command command = on ? (wide ? Command::force_on_wide : Command::force_on)
                              : (wide ? Command::force_off_wide : Command::force_off);
-  return request({.command = command, .address = place->address, .count_bytes = 0, .data = {}}, {});
+  return request(device, {.command = command, .address = place->address, .count_bytes = 0, .data = {}}, {});
 }
 
 tl::expected<std::uint16_t, FxDriverError> FxDriver::read_word(Device word) noexcept {
@@ -137,23 +164,40 @@ tl::expected<void, FxDriverError> FxDriver::write_words(Device first,
   return write_bytes(first, std::span{bytes}.first(words.size() * 2));
 }
 
-tl::expected<void, FxDriverError> FxDriver::request(const protocol::fx::Request& request,
+tl::expected<void, FxDriverError> FxDriver::request(Device device, const protocol::fx::Request& request,
                                                     std::span<std::byte> answer) noexcept {
   ++counters_.requests;
   const protocol::fx::FrameBytes frame = encode(request);
+  FxDriverError last = FxDriverError::no_answer;
   for (unsigned attempt = 0;; ++attempt) {
-    if (attempt > 0) ++counters_.retries;
-    const auto done = try_once({frame.data(), frame.size()}, answer);
+    if (attempt > 0) repeat(last);
+    auto done = try_once({frame.data(), frame.size()}, answer);
     if (done) return {};
+    if (done.error() == FxDriverError::outcome_unknown) {
+      if (!is_read(request.command)) {
+        if (!request_in_doubt_)
+          request_in_doubt_ = {request.command, device, request.count_bytes, last_port_error_};
+        return done;
+      }
+      done = tl::unexpected{FxDriverError::no_answer};
+    }
     // A port that failed is beyond what sending again can mend.
     if (done.error() == FxDriverError::port_failed || attempt == options_.retries) return done;
+    last = done.error();
   }
+}
+
+/// That nobody serves is known at once. Whoever is being started has the time that one who is busy would have had.
+void FxDriver::repeat(FxDriverError after) noexcept {
+  ++counters_.retries;
+  if (after == FxDriverError::not_executed) std::this_thread::sleep_until(sent_at_ + options_.send_timeout);
 }
 
 tl::expected<void, FxDriverError> FxDriver::try_once(std::span<const std::byte> frame,
                                                      std::span<std::byte> answer) noexcept {
   if (!line_is_clean_) port_.purge();
   line_is_clean_ = false;
+  sent_at_ = std::chrono::steady_clock::now();
   if (const auto sent = send(frame); !sent) return sent;
   const auto wait = frame.size() == 1 ? options_.enq_wait : options_.request_wait;
   if (wait > std::chrono::nanoseconds{0}) std::this_thread::sleep_for(wait);
@@ -181,7 +225,7 @@ tl::expected<void, FxDriverError> FxDriver::try_once(std::span<const std::byte> 
 
 tl::expected<void, FxDriverError> FxDriver::send(std::span<const std::byte> frame) noexcept {
   const auto written = port_.write(frame);
-  if (!written) return port_failed(written.error());
+  if (!written) return failed(written.error());
   if (*written != frame.size()) {
     ++counters_.time_outs;
     return tl::unexpected{FxDriverError::write_timed_out};
@@ -196,7 +240,7 @@ tl::expected<FxDriver::Event, FxDriverError> FxDriver::receive() noexcept {
   receiver_.reset();
   do {
     const auto count = port_.read(buffer);
-    if (!count) return port_failed(count.error());
+    if (!count) return failed(count.error());
     if (*count == 0) break;
     for (std::size_t index = 0; index < *count; ++index) {
       const Event event = receiver_.receive(buffer[index]);
@@ -222,9 +266,13 @@ tl::expected<void, FxDriverError> FxDriver::take_data(std::span<std::byte> answe
   return {};
 }
 
-tl::unexpected<FxDriverError> FxDriver::port_failed(protocol::PortError error) noexcept {
+tl::unexpected<FxDriverError> FxDriver::failed(protocol::PortError error) noexcept {
   last_port_error_ = error;
-  return tl::unexpected{FxDriverError::port_failed};
+  const bool in_doubt = is_in_doubt(error);
+  if (!in_doubt && error != protocol::PortError::not_executed)
+    return tl::unexpected{FxDriverError::port_failed};
+  ++counters_.time_outs;
+  return tl::unexpected{in_doubt ? FxDriverError::outcome_unknown : FxDriverError::not_executed};
 }
 
 }  // namespace kernel_mocks

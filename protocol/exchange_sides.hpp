@@ -28,7 +28,8 @@ class ExchangeMaster {
       std::span<const std::byte> request) noexcept = 0;
   /// Gets the response to the request written last.
   /// @param into  what does not fit is lost
-  /// @return      bytes copied; 0 if none came in time, and when the response is empty
+  /// @return      bytes copied; 0 when the response is empty, or nothing was written. When none came in time: 0 in the
+  ///              published handoff; how the request ended in the hardened one
   [[nodiscard]] virtual tl::expected<std::size_t, SharedMemoryError> get_response(
       std::span<std::byte> into) noexcept = 0;
 
@@ -45,10 +46,15 @@ class ExchangeMaster {
   ExchangeMaster& operator=(const ExchangeMaster&) = default;
 };
 
-/// The emulator's side. One thread calls the first three in turn.
+/// The emulator's side. One thread opens and closes; one thread, the same or another, calls the three steps in turn.
 class ExchangeSlave {
  public:
   virtual ~ExchangeSlave() = default;
+
+  /// Opening an open side does nothing.
+  [[nodiscard]] virtual tl::expected<void, SharedMemoryError> open() noexcept = 0;
+  /// Closing twice does nothing.
+  virtual void close() noexcept = 0;
 
   /// @return false when a stop was requested
   [[nodiscard]] virtual bool wait_for_request() noexcept = 0;

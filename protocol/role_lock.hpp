@@ -1,8 +1,9 @@
 // Who plays which role on a segment: at most one kernel and one emulator.
 //
-// The published design has no such lock, and the wrappers do not use it; the programs take it in main(), to
-// know whether named objects that they find are in use or left over from a process that died. The system
-// frees the lock when its process ends, however it ends.
+// The published design has no such lock, and the wrappers do not use it; the programs take it, to know whether named objects
+// that they find are in use or left over from a process that died. The hardened handoff has roles of its own; the programs
+// take this lock with either handoff, so that those of different ones keep apart, too. The system frees the lock when its
+// process ends, however it ends.
 //
 // The lock is an open-file-description lock (fcntl F_OFD_SETLK, Linux) on /tmp/ltsim-<segment>.<role>.lock.
 // The folder does not follow TMPDIR, as the segment does not either: both sides must look at one place. The

@@ -16,6 +16,14 @@ std::string_view to_string(PortError error) noexcept {
       return "the port did not accept the message";
     case PortError::line_lost:
       return "the line was lost";
+    case PortError::not_executed:
+      return "the message was not executed, as nobody took it";
+    case PortError::unanswered:
+      return "the message was taken and not answered in time";
+    case PortError::receiver_gone:
+      return "the one that had taken the message ended, or was started anew, before it answered";
+    case PortError::damaged:
+      return "the answer was damaged, or too long";
   }
   return "unknown port error";
 }

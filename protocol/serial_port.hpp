@@ -15,7 +15,8 @@
 
 namespace protocol {
 
-/// Why a port operation failed. A time-out is not a failure: it is a result of zero bytes.
+/// Why a port operation failed. A time-out is not a failure: it is a result of zero bytes. A carrier that knows what became
+/// of a message says so instead.
 enum class PortError : std::uint8_t {
   not_open,          ///< the port was never opened, or has been closed
   cannot_open,       ///< no such device or segment, or no permission
@@ -23,7 +24,17 @@ enum class PortError : std::uint8_t {
   message_too_long,  ///< more bytes than the carrier can take in one message
   refused,    ///< the carrier did not accept the bytes (a full semaphore: knob K4 of the paper variant)
   line_lost,  ///< the device went away: hang-up, I/O error
+  // Of a carrier that knows what became of a message (the hardened handoff).
+  not_executed,   ///< the other side has not executed it, and never will: it may be sent again
+  unanswered,     ///< in doubt: the other side has taken it and did not answer in time
+  receiver_gone,  ///< in doubt: the one that had taken it has ended, or was started anew
+  damaged,        ///< in doubt: the answer was damaged, or too long
 };
+
+/// Whether the message may have been executed, and nobody can tell.
+[[nodiscard]] constexpr bool is_in_doubt(PortError error) noexcept {
+  return error == PortError::unanswered || error == PortError::receiver_gone || error == PortError::damaged;
+}
 
 [[nodiscard]] std::string_view to_string(PortError error) noexcept;
 

@@ -28,6 +28,14 @@ std::string_view to_string(SharedMemoryError error) noexcept {
       return "the slave is busy with a request that was given up";
     case SharedMemoryError::rejected:
       return "the slave does not execute the request";
+    case SharedMemoryError::not_executed:
+      return "nobody has executed the request";
+    case SharedMemoryError::unanswered:
+      return "the request was taken and not answered in time";
+    case SharedMemoryError::slave_gone:
+      return "the slave that had taken the request is gone";
+    case SharedMemoryError::damaged:
+      return "the answer, or the shared memory, was damaged";
   }
   return "unknown shared memory error";
 }

@@ -20,6 +20,11 @@ enum class SharedMemoryError : std::uint8_t {
   no_slave,          ///< nobody serves: the request is not executed
   slave_is_busy,     ///< with a request that was given up: this one is not executed
   rejected,          ///< the slave answered that it does not execute the request
+  not_executed,      ///< the request was withdrawn or dropped, and nobody has executed it or will
+  // These three: the request may have been executed.
+  unanswered,  ///< taken, and not answered in time: it may yet be executed
+  slave_gone,  ///< the slave that had taken it has ended, or another one has come
+  damaged,  ///< its answer cannot be read or has no room, or a state word that neither side writes was there
 };
 
 [[nodiscard]] std::string_view to_string(SharedMemoryError error) noexcept;

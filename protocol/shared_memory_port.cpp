@@ -25,10 +25,18 @@ PortError to_port_error(SharedMemoryError error) noexcept {
     case SharedMemoryError::request_too_long:
       return PortError::message_too_long;
     case SharedMemoryError::semaphore_full:
+      return PortError::refused;
     case SharedMemoryError::no_slave:
     case SharedMemoryError::slave_is_busy:
     case SharedMemoryError::rejected:
-      return PortError::refused;
+    case SharedMemoryError::not_executed:
+      return PortError::not_executed;
+    case SharedMemoryError::unanswered:
+      return PortError::unanswered;
+    case SharedMemoryError::slave_gone:
+      return PortError::receiver_gone;
+    case SharedMemoryError::damaged:
+      return PortError::damaged;
   }
   return PortError::line_lost;
 }

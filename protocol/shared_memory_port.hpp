@@ -40,10 +40,11 @@ class SharedMemoryPort final : public SerialPort {
 
   /// Sends all bytes as one request. No bytes: no request.
   /// @return message_too_long: nothing was sent; refused: paper, K4 = one: the request may be executed all the same;
-  ///         hardened: it is not executed, as nobody serves or the slave is busy
+  ///         not_executed (hardened): nobody serves, or the slave is busy
   [[nodiscard]] tl::expected<std::size_t, PortError> write(
       std::span<const std::byte> bytes) noexcept override;
-  /// @return refused (hardened): the slave has answered that it does not execute the request
+  /// @return hardened: how the request ended, unless it was answered: not_executed, unanswered, receiver_gone, damaged.
+  ///         The published handoff knows no more than that no bytes came
   [[nodiscard]] tl::expected<std::size_t, PortError> read(std::span<std::byte> into) noexcept override;
 
   /// The read time-out takes the place of PaperOptions::read_timeout, or of hardened::Options::answer_timeout. The write

@@ -6,12 +6,16 @@
 
 namespace protocol {
 
-SharedMemoryPortManager::SharedMemoryPortManager(const PaperOptions& options, ExchangeObserver* observer)
+SharedMemoryPortManager::SharedMemoryPortManager(const HandoffOptions& options, ExchangeObserver* observer)
     : options_(options), observer_(observer) {}
 
 tl::expected<std::shared_ptr<SerialPort>, PortError> SharedMemoryPortManager::port(std::string_view name) {
   return ports_.find_or_make(name, [this](std::string segment_name) {
-    return std::make_shared<SharedMemoryPort>(std::move(segment_name), options_, observer_);
+    return std::visit(
+        [&](const auto& options) {
+          return std::make_shared<SharedMemoryPort>(std::move(segment_name), options, observer_);
+        },
+        options_);
   });
 }
 

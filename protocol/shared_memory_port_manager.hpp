@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 
 #include "protocol/exchange_observer.hpp"
-#include "protocol/paper_options.hpp"
+#include "protocol/handoff.hpp"
 #include "protocol/port_manager.hpp"
 #include "protocol/ports_by_name.hpp"
 
@@ -17,13 +17,13 @@ namespace protocol {
 class SharedMemoryPortManager final : public PortManager {
  public:
   /// @param observer  told of the exchanges of all ports; must outlive the manager and its ports
-  explicit SharedMemoryPortManager(const PaperOptions& options, ExchangeObserver* observer = nullptr);
+  explicit SharedMemoryPortManager(const HandoffOptions& options, ExchangeObserver* observer = nullptr);
 
   /// @param name  of the segment
   [[nodiscard]] tl::expected<std::shared_ptr<SerialPort>, PortError> port(std::string_view name) override;
 
  private:
-  PaperOptions options_;
+  HandoffOptions options_;
   ExchangeObserver* observer_;
   PortsByName ports_;
 };

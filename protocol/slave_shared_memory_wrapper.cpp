@@ -10,6 +10,12 @@ SlaveSharedMemoryWrapper::SlaveSharedMemoryWrapper(std::string segment_name, con
     : SharedMemoryWrapper(std::move(segment_name), options, observer, Side::slave),
       request_(layout().size_bytes - layout().request.bytes_offset) {}
 
+tl::expected<void, SharedMemoryError> SlaveSharedMemoryWrapper::open() noexcept {
+  return SharedMemoryWrapper::open();
+}
+
+void SlaveSharedMemoryWrapper::close() noexcept { SharedMemoryWrapper::close(); }
+
 bool SlaveSharedMemoryWrapper::wait_for_request() noexcept {
   while (!stop_requested_.load()) {
     if (!wait_for_semaphore()) continue;  // s1

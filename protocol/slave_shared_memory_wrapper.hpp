@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "protocol/exchange_sides.hpp"
 #include "protocol/shared_memory_wrapper.hpp"
 
@@ -27,6 +29,9 @@ class SlaveSharedMemoryWrapper final : public SharedMemoryWrapper, public Exchan
  public:
   SlaveSharedMemoryWrapper(std::string segment_name, const PaperOptions& options,
                            ExchangeObserver* observer = nullptr);
+
+  [[nodiscard]] tl::expected<void, SharedMemoryError> open() noexcept override;
+  void close() noexcept override;
 
   /// Waits until the semaphore is released. A signal does not end the wait.
   /// @return false when a stop was requested; a request that is pending then is left as it is

@@ -41,6 +41,8 @@ tl::expected<void, SharedMemoryError> remove_segment(const std::string& segment_
   return {};
 }
 
+bool segment_exists(const std::string& segment_name) noexcept { return Roles::exist(segment_name); }
+
 std::uint64_t random_number() noexcept {
   std::uint64_t number = 0;
   while (number == 0) {

@@ -36,6 +36,9 @@ namespace protocol::hardened {
 [[nodiscard]] tl::expected<void, SharedMemoryError> remove_segment(const std::string& segment_name,
                                                                    const Options& options = {}) noexcept;
 
+/// Whether there are named objects of the hardened handoff, whatever their state.
+[[nodiscard]] bool segment_exists(const std::string& segment_name) noexcept;
+
 class Endpoint {
  public:
   Endpoint(const Endpoint&) = delete;

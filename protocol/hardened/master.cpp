@@ -13,6 +13,10 @@ namespace {
 
 constexpr auto hands_nothing_over = std::memory_order_relaxed;
 
+constexpr CallResult unknown(SharedMemoryError why) noexcept {
+  return {.outcome = ExchangeOutcome::unknown, .why = why};
+}
+
 }  // namespace
 
 Master::Master(std::string segment_name, const Options& options, ExchangeObserver* observer)
@@ -69,7 +73,7 @@ tl::expected<std::size_t, SharedMemoryError> Master::get_response(std::span<std:
   if (!is_open()) return tl::unexpected(SharedMemoryError::not_open);
   if (!exchange_) return 0;
   const CallResult result = finish(into);
-  if (result.outcome == ExchangeOutcome::rejected) return tl::unexpected(SharedMemoryError::rejected);
+  if (result.outcome != ExchangeOutcome::ok) return tl::unexpected(result.why);
   return result.response_bytes;
 }
 
@@ -110,13 +114,14 @@ Master::Published Master::publish(bool is_query) noexcept {
 CallResult Master::finish(std::span<std::byte> into) noexcept {
   Attempt attempt = await(into);
   for (unsigned queries = 0; attempt.in_doubt && queries < options().queries_max; ++queries) {
-    if (publish(true) != Published::yes) break;
+    const Published published = publish(true);
+    if (published == Published::no_slave || published == Published::other_generation)
+      attempt.result.why = SharedMemoryError::slave_gone;
+    if (published != Published::yes) break;
     attempt = await(into);
   }
-  if (attempt.in_doubt) {
-    attempt.result.outcome =
-        options().rules.doubt_is_kept ? ExchangeOutcome::unknown : ExchangeOutcome::not_executed;
-  }
+  if (attempt.in_doubt && !options().rules.doubt_is_kept)
+    attempt.result.outcome = ExchangeOutcome::not_executed;
   if (attempt.result.outcome == ExchangeOutcome::ok)
     observer().delivered(into.first(attempt.result.response_bytes));
   end(attempt.result.outcome);
@@ -125,10 +130,10 @@ CallResult Master::finish(std::span<std::byte> into) noexcept {
 
 Master::Attempt Master::await(std::span<std::byte> into) noexcept {
   const bool is_query = exchange_->is_query;
-  const Attempt in_doubt{.in_doubt = true, .result = {}};
-  const Attempt unknown{.result = {.outcome = ExchangeOutcome::unknown}};
+  const Attempt in_doubt{.in_doubt = true, .result = unknown(SharedMemoryError::unanswered)};
   // A query that was not executed says nothing of its request, which may have been.
-  const Attempt dropped = is_query ? unknown : Attempt{.result = {.outcome = ExchangeOutcome::not_executed}};
+  const Attempt dropped =
+      is_query ? Attempt{.result = unknown(SharedMemoryError::slave_gone)} : Attempt{.result = {}};
   const Attempt withdrawn = is_query ? in_doubt : dropped;
   for (;;) {
     const StateWord found = look_before_use();
@@ -140,7 +145,7 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
         return dropped;
       case Phase::lost:
         if (!move(found, found.in(Phase::idle), hands_nothing_over)) break;
-        return unknown;
+        return {.result = unknown(SharedMemoryError::slave_gone)};
       case Phase::request: {
         // First the word, then the clock: an answer that is there counts, however late it is.
         const auto now = Clock::now();
@@ -163,7 +168,7 @@ Master::Attempt Master::await(std::span<std::byte> into) noexcept {
       case Phase::raw:
       case Phase::orphan:
         // Neither side has done that.
-        return unknown;
+        return {.result = unknown(SharedMemoryError::damaged)};
     }
   }
 }
@@ -175,23 +180,22 @@ CallResult Master::accept(StateWord found, std::span<std::byte> into) noexcept {
     // A slave that attaches meanwhile leaves the answer as it is, in its own generation. The copy stands: to read the
     // area once more would be to load its length twice.
     found = look();
-    if (found.phase != Phase::response)
-      return {.outcome = ExchangeOutcome::unknown};  // only a foreign writer
+    if (found.phase != Phase::response) return unknown(SharedMemoryError::damaged);  // only a foreign writer
   }
   return judge(message, found, into);
 }
 
 CallResult Master::judge(const std::optional<std::span<const std::byte>>& message, const StateWord& word,
                          std::span<std::byte> into) noexcept {
-  constexpr CallResult unknown{.outcome = ExchangeOutcome::unknown};
-  if (!message || word.sequence != exchange_->published.sequence) return unknown;
+  constexpr CallResult damaged = unknown(SharedMemoryError::damaged);
+  if (!message || word.sequence != exchange_->published.sequence) return damaged;
   const auto response = decode_response(*message);
-  if (!response) return unknown;
+  if (!response) return damaged;
   const ResponseHeader& header = response->header;
   const bool is_mine = header.session == session_ && header.sequence == sequence_;
   const bool is_of_unreadable =
       header.status == Status::rejected && header.session == 0 && header.sequence == 0;
-  if (!is_mine && !is_of_unreadable) return unknown;
+  if (!is_mine && !is_of_unreadable) return damaged;
   if (word.generation == exchange_->published.generation) {
     known_slave_ = header.slave;
     known_slave_generation_ = word.generation;
@@ -202,9 +206,10 @@ CallResult Master::judge(const std::optional<std::span<const std::byte>>& messag
     case Status::rejected:
     case Status::wrong_slave:
       // Of a query this says nothing about the attempt before it.
-      return exchange_->is_query ? unknown : CallResult{.outcome = ExchangeOutcome::rejected};
+      if (exchange_->is_query) return damaged;
+      return {.outcome = ExchangeOutcome::rejected, .why = SharedMemoryError::rejected};
     case Status::answer_too_long:
-      return unknown;
+      return damaged;
   }
   const std::size_t count = std::min(into.size(), response->payload.size());
   std::ranges::copy(response->payload.first(count), into.begin());
@@ -214,9 +219,7 @@ CallResult Master::judge(const std::optional<std::span<const std::byte>>& messag
 void Master::give_up_at_once() noexcept {
   if (!exchange_) return;
   exchange_->take_by = exchange_->answer_by = Clock::time_point::min();
-  Attempt attempt = await({});
-  if (attempt.in_doubt) attempt.result.outcome = ExchangeOutcome::unknown;
-  end(attempt.result.outcome);
+  end(await({}).result.outcome);
 }
 
 void Master::end(ExchangeOutcome outcome) noexcept {

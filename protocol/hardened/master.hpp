@@ -44,6 +44,8 @@ namespace protocol::hardened {
 struct CallResult {
   ExchangeOutcome outcome = ExchangeOutcome::not_executed;
   std::size_t response_bytes = 0;  ///< ok: of the payload that was copied
+  /// Not ok: rejected, not_executed, or why it is unknown: unanswered, slave_gone, damaged.
+  SharedMemoryError why = SharedMemoryError::not_executed;
 
   bool operator==(const CallResult&) const = default;
 };
@@ -71,7 +73,7 @@ class Master final : public Endpoint, public ExchangeMaster {
   [[nodiscard]] tl::expected<void, SharedMemoryError> write(
       std::span<const std::byte> request) noexcept override;
   /// Steps 5 and 6.
-  /// @return rejected; 0 bytes: not executed, or unknown (last_outcome() tells), or nothing was written
+  /// @return CallResult::why; 0 bytes: the answer is empty, or nothing was written
   [[nodiscard]] tl::expected<std::size_t, SharedMemoryError> get_response(
       std::span<std::byte> into) noexcept override;
   /// How the last request ended; not_executed before the first.

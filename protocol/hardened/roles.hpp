@@ -39,7 +39,7 @@ enum class Side : std::uint8_t { master, slave };
 
 class Roles {
  public:
-  explicit Roles(const std::string& segment_name) : name_(segment_name + ".roles") {}
+  explicit Roles(const std::string& segment_name) : name_(object_name(segment_name)) {}
   Roles(const Roles&) = delete;
   Roles& operator=(const Roles&) = delete;
   ~Roles() { give_back(); }
@@ -62,6 +62,10 @@ class Roles {
   [[nodiscard]] MemoryIdentity segment() const noexcept;
   void set_segment(MemoryIdentity segment) noexcept;
 
+  /// Whether there is such an object: it is made before all others of a segment.
+  [[nodiscard]] static bool exist(const std::string& segment_name) noexcept {
+    return NamedMemory::identity_of(object_name(segment_name)).has_value();
+  }
   /// Removes this object; the holder of both roles, under the lock for making, after all others.
   void remove() noexcept { NamedMemory::remove(name_); }
 
@@ -71,6 +75,9 @@ class Roles {
   };
   struct Layout;
 
+  [[nodiscard]] static std::string object_name(const std::string& segment_name) {
+    return segment_name + ".roles";
+  }
   [[nodiscard]] bool open() noexcept;
   [[nodiscard]] Locks* find_or_make_locks() noexcept;
   [[nodiscard]] RobustMutex& lock_of(Side side) const noexcept {

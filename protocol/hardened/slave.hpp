@@ -10,7 +10,7 @@
 //   I3   what is executed is a request as it was submitted: whole, checked in the copy.
 //   I5   no request is executed twice by one slave; a new slave finds none that an earlier one may have executed.
 //   I11  doorbells mean nothing: more of them than requests lead to nothing.
-// One thread opens, serves and closes.
+// One thread opens and closes, and lives as long as the slave is open; one thread, the same or another, serves.
 #pragma once
 
 #include <atomic>
@@ -38,9 +38,9 @@ class Slave final : public Endpoint, public ExchangeSlave {
   /// Takes the role of the slave and begins to serve. A request that nobody has taken is dropped, one that was taken
   /// is lost.
   /// @return cannot_open, role_taken, not_made_in_time, other_layout, other_segment
-  [[nodiscard]] tl::expected<void, SharedMemoryError> open() noexcept;
+  [[nodiscard]] tl::expected<void, SharedMemoryError> open() noexcept override;
   /// Stops in good order: a request that nobody has taken is dropped. Gives the role back.
-  void close() noexcept;
+  void close() noexcept override;
   [[nodiscard]] bool is_open() const noexcept;
 
   /// Steps 1 to 4.

@@ -10,6 +10,8 @@
 
 #include "emulator_models/configuration_frames.hpp"
 #include "emulator_models/soft_plc/configuration_transfer.hpp"
+#include "protocol/handoff.hpp"
+#include "protocol/hardened/slave.hpp"
 #include "protocol/role_lock.hpp"
 #include "tests/emulator_models/configured_emulator_rig.hpp"
 #include "tests/emulator_models/emulator_process.hpp"
@@ -84,6 +86,32 @@ TEST_F(ConfigurationOverTheWire, is_taken_in_RUN_over_the_segment_and_over_the_l
   EXPECT_EQ(emulator.printed().find("STOP"), std::string::npos) << emulator.printed();
   expect_scans_go_on(SerialLine{terminal});
   end(emulator);
+}
+
+TEST_F(ConfigurationOverTheWire, goes_by_the_handoff_that_both_were_told_and_leaves_nothing) {
+  write_sent("good.il", 20);
+  for (const std::string handoff : {"hardened", "paper"}) {
+    EmulatorProcess emulator{{"--config", path, "--segment", segment, "--protocol", handoff}};
+    ASSERT_TRUE(emulator.wait_for_text("RUN\n"));
+    const auto other =
+        send_over({"--segment", segment, "--protocol", handoff == "paper" ? "hardened" : "paper"});
+    EXPECT_EQ(other.first, 2);
+    EXPECT_NE(other.second.find("--protocol paper"), std::string::npos) << other.second;
+    EXPECT_EQ(send_over({"--segment", segment, "--protocol", handoff}).first, 0);
+    end(emulator);
+    EXPECT_EQ(protocol::handoff_of_segment(segment), std::nullopt);
+  }
+}
+
+TEST_F(ConfigurationOverTheWire, that_finds_nobody_who_serves_removes_what_is_left) {
+  write_sent("good.il", 20);
+  protocol::hardened::Slave slave{segment, {}};
+  ASSERT_TRUE(slave.open());
+  slave.close();
+  const auto sent = send_over({"--segment", segment});
+  EXPECT_EQ(sent.first, 2);
+  EXPECT_NE(sent.second.find("was not executed"), std::string::npos) << sent.second;
+  EXPECT_EQ(protocol::handoff_of_segment(segment), std::nullopt);
 }
 
 TEST_F(ConfigurationOverTheWire, a_bad_one_is_refused_whole_with_line_and_reason_and_the_old_one_goes_on) {

@@ -4,7 +4,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <optional>
 
+#include "protocol/handoff.hpp"
+#include "protocol/hardened/endpoint.hpp"
 #include "protocol/role_lock.hpp"
 #include "protocol/shared_memory_wrapper.hpp"
 #include "tests/emulator_models/archive/archive_rig.hpp"
@@ -174,47 +178,71 @@ TEST(PlcEmulatorArchive, what_the_plc_did_and_what_the_port_wrote_stands_in_the_
   EXPECT_EQ(query("SELECT what FROM history WHERE event = 'mode'"), "RUN ");
 }
 
-struct PlcEmulatorSegment : ::testing::Test {
+/// With either handoff.
+struct PlcEmulatorSegment : ::testing::TestWithParam<protocol::Handoff> {
   const std::string segment = "ltsim-test-emulator-" + std::to_string(::getpid());
-  ~PlcEmulatorSegment() override { SharedMemoryWrapper::remove(segment); }
+  ~PlcEmulatorSegment() override {
+    SharedMemoryWrapper::remove(segment);
+    static_cast<void>(protocol::hardened::remove_segment(segment));
+  }
+  [[nodiscard]] std::vector<std::string> arguments(
+      std::optional<protocol::Handoff> handoff = std::nullopt) const {
+    return {"--segment", segment, "--protocol", std::string{name_of(handoff.value_or(GetParam()))}};
+  }
+  [[nodiscard]] static protocol::Handoff other() {
+    return GetParam() == protocol::Handoff::paper ? protocol::Handoff::hardened : protocol::Handoff::paper;
+  }
+  /// An emulator that is killed while it serves.
+  void leave_over(protocol::Handoff handoff) const {
+    EmulatorProcess killed{arguments(handoff)};
+    ASSERT_EQ(killed.wait_for_line("segment: "), segment);
+    killed.send_signal(SIGKILL);
+    EXPECT_EQ(killed.wait_for_exit(), -SIGKILL);
+    EXPECT_EQ(protocol::handoff_of_segment(segment), handoff);
+  }
+  /// What the system has under names of this segment.
+  [[nodiscard]] std::vector<std::string> named_objects() const {
+    std::vector<std::string> names;
+    for (const char* const folder : {"/dev/shm", "/tmp"}) {
+      for (const auto& file : std::filesystem::directory_iterator{folder}) {
+        const std::string name = file.path().filename();
+        if (name.find(segment) != std::string::npos) names.push_back(name);
+      }
+    }
+    return names;
+  }
 };
 
-TEST_F(PlcEmulatorSegment, sigterm_and_sigint_end_the_wait_and_leave_no_named_object) {
+TEST_P(PlcEmulatorSegment, sigterm_and_sigint_end_the_wait_and_leave_no_named_object) {
   for (const int signal : {SIGTERM, SIGINT}) {
-    EmulatorProcess emulator{{"--segment", segment, "--pty"}};
+    auto words = arguments();
+    words.emplace_back("--pty");
+    EmulatorProcess emulator{words};
     ASSERT_EQ(emulator.wait_for_line("segment: "), segment);
-    EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
+    EXPECT_EQ(protocol::handoff_of_segment(segment), GetParam());
     emulator.send_signal(signal);
     EXPECT_EQ(emulator.wait_for_exit(), 0);
-    EXPECT_FALSE(SharedMemoryWrapper::exists(segment));
+    EXPECT_EQ(named_objects(), std::vector<std::string>{});
   }
 }
 
-TEST_F(PlcEmulatorSegment, what_a_killed_emulator_left_is_removed_with_a_message) {
-  {
-    EmulatorProcess killed{{"--segment", segment}};
-    ASSERT_EQ(killed.wait_for_line("segment: "), segment);
-    killed.send_signal(SIGKILL);
-    EXPECT_EQ(killed.wait_for_exit(), -SIGKILL);
+TEST_P(PlcEmulatorSegment, what_a_killed_emulator_left_is_removed_with_a_message_whichever_handoff_it_had) {
+  for (const protocol::Handoff killed : {protocol::Handoff::paper, protocol::Handoff::hardened}) {
+    leave_over(killed);
+    EmulatorProcess fresh{arguments()};
+    EXPECT_NE(fresh.wait_for_line("plc-emulator: removed what a killed process left"), "");
+    EXPECT_EQ(fresh.wait_for_line("segment: "), segment);
+    fresh.send_signal(SIGTERM);
+    EXPECT_EQ(fresh.wait_for_exit(), 0);
+    EXPECT_EQ(named_objects(), std::vector<std::string>{});
   }
-  EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
-  EmulatorProcess fresh{{"--segment", segment}};
-  EXPECT_NE(fresh.wait_for_line("plc-emulator: removed what a killed process left"), "");
-  EXPECT_EQ(fresh.wait_for_line("segment: "), segment);
-  fresh.send_signal(SIGTERM);
-  EXPECT_EQ(fresh.wait_for_exit(), 0);
 }
 
-TEST_F(PlcEmulatorSegment, an_emulator_that_comes_back_joins_the_segment_of_a_running_kernel) {
+TEST_P(PlcEmulatorSegment, an_emulator_that_comes_back_joins_the_segment_of_a_running_kernel) {
   protocol::RoleLock kernel{segment, protocol::Role::kernel};
   ASSERT_TRUE(kernel.try_lock().has_value());
-  {
-    EmulatorProcess killed{{"--segment", segment}};
-    ASSERT_EQ(killed.wait_for_line("segment: "), segment);
-    killed.send_signal(SIGKILL);
-    EXPECT_EQ(killed.wait_for_exit(), -SIGKILL);
-  }
-  EmulatorProcess again{{"--segment", segment}};
+  leave_over(GetParam());
+  EmulatorProcess again{arguments()};
   EXPECT_EQ(again.wait_for_line("segment: "), segment);
   EXPECT_NE(again.printed().find("joined"), std::string::npos);
   again.send_signal(SIGTERM);
@@ -222,16 +250,33 @@ TEST_F(PlcEmulatorSegment, an_emulator_that_comes_back_joins_the_segment_of_a_ru
   EXPECT_NE(again.printed().find("a kernel is still attached"), std::string::npos);
 }
 
-TEST_F(PlcEmulatorSegment, a_second_emulator_is_refused_and_the_first_one_goes_on) {
-  EmulatorProcess first{{"--segment", segment}};
+TEST_P(PlcEmulatorSegment, the_segment_of_a_running_kernel_with_the_other_handoff_is_refused) {
+  protocol::RoleLock kernel{segment, protocol::Role::kernel};
+  ASSERT_TRUE(kernel.try_lock().has_value());
+  leave_over(other());
+  EmulatorProcess refused{arguments()};
+  EXPECT_EQ(refused.wait_for_exit(), 2);
+  EXPECT_NE(refused.printed().find("give --protocol " + std::string{name_of(other())}), std::string::npos)
+      << refused.printed();
+  EXPECT_EQ(protocol::handoff_of_segment(segment), other());
+}
+
+TEST_P(PlcEmulatorSegment, a_second_emulator_is_refused_and_the_first_one_goes_on) {
+  EmulatorProcess first{arguments()};
   ASSERT_EQ(first.wait_for_line("segment: "), segment);
-  EmulatorProcess second{{"--segment", segment}};
-  EXPECT_EQ(second.wait_for_exit(), 2);
-  EXPECT_NE(second.printed().find("another emulator"), std::string::npos);
-  EXPECT_TRUE(SharedMemoryWrapper::exists(segment));
+  for (const protocol::Handoff handoff : {protocol::Handoff::paper, protocol::Handoff::hardened}) {
+    EmulatorProcess second{arguments(handoff)};
+    EXPECT_EQ(second.wait_for_exit(), 2);
+    EXPECT_NE(second.printed().find("another emulator"), std::string::npos);
+    EXPECT_EQ(protocol::handoff_of_segment(segment), GetParam());
+  }
   first.send_signal(SIGTERM);
   EXPECT_EQ(first.wait_for_exit(), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Handoff, PlcEmulatorSegment,
+                         ::testing::Values(protocol::Handoff::hardened, protocol::Handoff::paper),
+                         [](const auto& handoff) { return std::string{name_of(handoff.param)}; });
 
 TEST(PlcEmulatorUsage, help_is_0_and_bad_usage_is_2) {
   const struct {
@@ -241,7 +286,9 @@ TEST(PlcEmulatorUsage, help_is_0_and_bad_usage_is_2) {
               {{}, 2},
               {{"--pty", "--model", "FX9"}, 2},
               {{"--pty", "--scan-period-ms", "0"}, 2},
-              {{"--pty", "--length-check", "maybe"}, 2},
+              {{"--pty", "--protocol", "paper", "--length-check", "maybe"}, 2},
+              {{"--pty", "--length-check", "none"}, 2},
+              {{"--pty", "--protocol", "maybe"}, 2},
               {{"--pty", "--archive", "/nowhere/plc.archive"}, 2},
               {{"--pty", "--archive-signals", "Y0"}, 2},
               {{"--pty", "--archive", "/nowhere/plc.archive", "--archive-signals", "Y8"}, 2},

@@ -13,6 +13,7 @@ namespace kernel_mocks {
 namespace {
 
 using namespace std::chrono_literals;
+using protocol::PortError;
 using protocol::fx::Device;
 using protocol::fx::DeviceKind;
 using protocol::fx::Model;
@@ -314,6 +315,106 @@ TEST_F(FxDriverTest, a_failed_port_is_reported_and_not_asked_again) {
   EXPECT_EQ(fx.force(y0, true).error(), FxDriverError::port_failed);
   EXPECT_EQ(fx.last_port_error(), protocol::PortError::line_lost);
   EXPECT_EQ(fx.counters().retries, 0U);
+}
+
+// --- a port that tells what became of a request ---
+
+constexpr std::array in_doubt{PortError::unanswered, PortError::receiver_gone, PortError::damaged};
+
+TEST_F(FxDriverTest, does_not_repeat_a_write_or_a_force_that_may_have_been_executed) {
+  for (const PortError reason : in_doubt) {
+    port = {};
+    port.replies = {ScriptedPort::failure(reason), ScriptedPort::whole(ack), ScriptedPort::failure(reason)};
+    FxDriver fx = driver();
+    EXPECT_EQ(fx.force(y0, true).error(), FxDriverError::outcome_unknown);
+    EXPECT_EQ(port.written.size(), 1U);
+    EXPECT_EQ(fx.last_port_error(), reason);
+    EXPECT_TRUE(fx.force(y0, false).has_value()) << "another request is the caller's decision";
+    EXPECT_EQ(fx.write_words(d123, std::array<std::uint16_t, 1>{1}).error(), FxDriverError::outcome_unknown);
+    EXPECT_EQ(port.written.size(), 3U);
+    EXPECT_EQ(fx.counters().retries, 0U);
+  }
+}
+
+TEST_F(FxDriverTest, keeps_the_first_request_in_doubt_and_tells_which_and_why) {
+  port.replies = {ScriptedPort::failure(PortError::receiver_gone),
+                  ScriptedPort::failure(PortError::unanswered)};
+  FxDriver fx = driver();
+  EXPECT_FALSE(fx.request_in_doubt());
+  ASSERT_FALSE(fx.write_words(d123, std::array<std::uint16_t, 2>{1, 2}).has_value());
+  ASSERT_FALSE(fx.force(y0, true).has_value());
+  ASSERT_TRUE(fx.request_in_doubt());
+  EXPECT_EQ(
+      to_string(*fx.request_in_doubt()),
+      "write 4 bytes from D123 on: the one that had taken the message ended, or was started anew, before it "
+      "answered");
+}
+
+TEST(FxDriverRequestInDoubt, is_told_by_what_it_does_to_which_device) {
+  using protocol::fx::Command;
+  constexpr Device m96{DeviceKind::m, 96};
+  const auto begin_of = [&](Command command) {
+    const std::string text = to_string(RequestInDoubt{command, m96, 1, protocol::PortError::unanswered});
+    return text.substr(0, text.find(':'));
+  };
+  EXPECT_EQ(begin_of(Command::write), "write 1 byte from M96 on");
+  EXPECT_EQ(begin_of(Command::write_wide), "write 1 byte from M96 on");
+  EXPECT_EQ(begin_of(Command::force_on), "force M96 on");
+  EXPECT_EQ(begin_of(Command::force_on_wide), "force M96 on");
+  EXPECT_EQ(begin_of(Command::force_off), "force M96 off");
+  EXPECT_EQ(begin_of(Command::force_off_wide), "force M96 off");
+}
+
+TEST_F(FxDriverTest, repeats_a_read_and_enq_whatever_became_of_them) {
+  for (const PortError reason : in_doubt) {
+    port = {};
+    port.replies = {ScriptedPort::failure(reason), ScriptedPort::whole(ack), ScriptedPort::failure(reason),
+                    ScriptedPort::whole(reply_1234_abcd)};
+    FxDriver fx = driver();
+    EXPECT_TRUE(fx.connect().has_value());
+    EXPECT_TRUE(fx.read_bytes(d123, four).has_value());
+    EXPECT_EQ(port.written.size(), 4U);
+    EXPECT_FALSE(fx.request_in_doubt());
+  }
+}
+
+TEST_F(FxDriverTest, of_a_read_that_is_never_answered_says_just_that) {
+  options.retries = 1;
+  port.replies = {ScriptedPort::failure(PortError::unanswered), ScriptedPort::failure(PortError::unanswered)};
+  FxDriver fx = driver();
+  EXPECT_EQ(fx.read_bytes(d123, four).error(), FxDriverError::no_answer);
+  EXPECT_FALSE(fx.request_in_doubt());
+}
+
+TEST_F(FxDriverTest, repeats_what_was_not_executed_and_gives_up_in_the_end) {
+  options.send_timeout = 0s;
+  port.replies = {ScriptedPort::failure(PortError::not_executed), ScriptedPort::whole(ack)};
+  FxDriver fx = driver();
+  EXPECT_TRUE(fx.force(y0, true).has_value());
+  EXPECT_EQ(port.written.size(), 2U);
+  port.write_error = PortError::not_executed;
+  EXPECT_EQ(fx.force(y0, false).error(), FxDriverError::not_executed);
+  EXPECT_EQ(fx.counters().retries, 1 + options.retries);
+  EXPECT_EQ(fx.connect().error(), FxDriverError::not_executed);
+}
+
+TEST_F(FxDriverTest, gives_who_is_being_started_the_time_to_take_a_request) {
+  options.send_timeout = 20ms;
+  options.retries = 1;
+  port.write_error = PortError::not_executed;
+  FxDriver fx = driver();
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(fx.force(y0, true).has_value());
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 20ms);
+}
+
+TEST_F(FxDriverTest, tells_the_port_both_time_outs) {
+  port.replies = {ScriptedPort::whole(ack)};
+  options.send_timeout = 3s;
+  FxDriver fx = driver();
+  ASSERT_TRUE(fx.connect().has_value());
+  EXPECT_EQ(port.timeouts.write, 3s);
+  EXPECT_EQ(port.timeouts.read, 10s);
 }
 
 TEST_F(FxDriverTest, a_request_that_the_carrier_takes_only_in_part_has_timed_out) {

@@ -1,6 +1,7 @@
 #include "tests/kernel_mocks/scripted_port.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace kernel_mocks {
 
@@ -31,12 +32,14 @@ tl::expected<std::size_t, protocol::PortError> ScriptedPort::write(
     replies.pop_front();
     arrived_.insert(arrived_.end(), reply.pieces.begin(), reply.pieces.end());
     late_ = reply.late_pieces;
+    error_ = reply.error;
   }
   return std::min(bytes.size(), write_bytes_max);
 }
 
 tl::expected<std::size_t, protocol::PortError> ScriptedPort::read(std::span<std::byte> into) noexcept {
   if (read_error) return tl::unexpected{*read_error};
+  if (error_) return tl::unexpected{*std::exchange(error_, std::nullopt)};
   if (endless_noise) {
     into.front() = *endless_noise;
     return 1;

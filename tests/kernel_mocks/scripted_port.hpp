@@ -22,6 +22,8 @@ class ScriptedPort final : public protocol::SerialPort {
   struct Reply {
     std::vector<Bytes> pieces;
     std::vector<Bytes> late_pieces;
+    /// What read() says instead, once.
+    std::optional<protocol::PortError> error = std::nullopt;
   };
 
   // The script. A write without a reply in the script is followed by silence.
@@ -40,11 +42,17 @@ class ScriptedPort final : public protocol::SerialPort {
   protocol::PortTimeouts timeouts;
 
   /// A reply that comes as a whole, as a shared-memory port delivers it.
-  static Reply whole(std::string_view text) { return {{bytes_of(text)}, {}}; }
+  static Reply whole(std::string_view text) { return {.pieces = {bytes_of(text)}, .late_pieces = {}}; }
   /// A reply that comes byte by byte, as a tty delivers it.
   static Reply bytewise(std::string_view text);
   static Reply silence() { return {}; }
-  static Reply after_time_out(std::string_view text) { return {{}, {bytes_of(text)}}; }
+  /// A carrier that knows what became of the message.
+  static Reply failure(protocol::PortError error) {
+    return {.pieces = {}, .late_pieces = {}, .error = error};
+  }
+  static Reply after_time_out(std::string_view text) {
+    return {.pieces = {}, .late_pieces = {bytes_of(text)}};
+  }
 
   tl::expected<void, protocol::PortError> open() noexcept override;
   void close() noexcept override { open_ = false; }
@@ -58,6 +66,7 @@ class ScriptedPort final : public protocol::SerialPort {
   bool open_ = false;
   std::deque<Bytes> arrived_;
   std::vector<Bytes> late_;
+  std::optional<protocol::PortError> error_;
 };
 
 }  // namespace kernel_mocks

@@ -1,12 +1,16 @@
 // The shared memory as a serial port: what a kernel that knows only SerialPort meets.
 
 #include <array>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "protocol/handoff.hpp"
+#include "protocol/hardened/slave.hpp"
 #include "protocol/shared_memory_port.hpp"
 #include "protocol/shared_memory_port_manager.hpp"
 #include "protocol/slave_shared_memory_wrapper.hpp"
+#include "tests/protocol/hardened/hardened_segment.hpp"
 #include "tests/protocol/test_segment.hpp"
 
 namespace protocol {
@@ -144,6 +148,101 @@ TEST(SharedMemoryPort, reports_a_request_whose_post_was_refused) {  // K4
   ASSERT_TRUE(port.open());
   ASSERT_TRUE(port.write(bytes("A")));
   EXPECT_EQ(port.write(bytes("B")), tl::make_unexpected(PortError::refused));
+}
+
+// --- the hardened handoff, which tells how a request ended ---
+
+class HardenedPort : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(port_.open());
+    port_.set_timeouts({.read = 0ns, .write = 0ns});
+  }
+  tl::expected<std::size_t, PortError> read() { return port_.read(buffer_); }
+  void take() {
+    ASSERT_TRUE(slave_.wait_for_request());
+    static_cast<void>(slave_.read_request());
+  }
+
+  hardened::HardenedSegment segment_;
+  hardened::Slave slave_{segment_.name(), hardened::impatient()};
+  SharedMemoryPort port_{segment_.name(), hardened::impatient()};
+  std::array<std::byte, 8> buffer_{};
+};
+
+TEST_F(HardenedPort, says_that_nobody_serves) {
+  EXPECT_EQ(port_.write(bytes("ask")), tl::make_unexpected(PortError::not_executed));
+}
+
+TEST_F(HardenedPort, says_that_a_request_was_withdrawn) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  EXPECT_EQ(read(), tl::make_unexpected(PortError::not_executed));
+  EXPECT_EQ(read(), 0u) << "it is told once";
+}
+
+TEST_F(HardenedPort, says_that_a_request_was_taken_and_not_answered_and_that_the_next_one_is_not_taken) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  take();
+  EXPECT_EQ(read(), tl::make_unexpected(PortError::unanswered));
+  EXPECT_EQ(port_.write(bytes("next")), tl::make_unexpected(PortError::not_executed));
+}
+
+TEST_F(HardenedPort, says_that_who_had_taken_a_request_is_gone) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  take();
+  slave_.close();
+  ASSERT_TRUE(slave_.open());
+  EXPECT_EQ(read(), tl::make_unexpected(PortError::receiver_gone));
+}
+
+TEST_F(HardenedPort, says_that_an_answer_has_no_room) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  take();
+  slave_.write_response(bytes("123456789"));
+  EXPECT_EQ(read(), tl::make_unexpected(PortError::damaged));
+}
+
+TEST_F(HardenedPort, says_that_a_damaged_request_was_not_executed) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  RawSegment(segment_.name()).set_text(hardened::request_offset, "?");
+  std::jthread emulator([this] { EXPECT_FALSE(slave_.wait_for_request()); });
+  port_.set_timeouts({.read = 60s, .write = 60s});
+  while (segment_.word().phase != hardened::Phase::response) std::this_thread::yield();
+  EXPECT_EQ(read(), tl::make_unexpected(PortError::not_executed));
+  slave_.request_stop();
+}
+
+TEST_F(HardenedPort, gives_no_bytes_for_an_empty_answer) {
+  ASSERT_TRUE(slave_.open());
+  ASSERT_TRUE(port_.write(bytes("ask")));
+  take();
+  slave_.write_response({});
+  EXPECT_EQ(read(), 0u);
+}
+
+TEST(PortErrors, that_are_in_doubt_are_three) {
+  for (const PortError error : {PortError::unanswered, PortError::receiver_gone, PortError::damaged})
+    EXPECT_TRUE(is_in_doubt(error)) << to_string(error);
+  for (const PortError error :
+       {PortError::not_open, PortError::cannot_open, PortError::already_in_use, PortError::message_too_long,
+        PortError::refused, PortError::line_lost, PortError::not_executed})
+    EXPECT_FALSE(is_in_doubt(error)) << to_string(error);
+}
+
+TEST(SharedMemoryPortManager, makes_ports_of_the_handoff_that_it_was_told) {
+  const hardened::HardenedSegment segment;
+  const TestSegment published;
+  SharedMemoryPortManager hardened_ports{hardened::impatient()};
+  SharedMemoryPortManager paper_ports{small_options()};
+  ASSERT_TRUE((*hardened_ports.port(segment.name()))->open());
+  ASSERT_TRUE((*paper_ports.port(published.name()))->open());
+  EXPECT_EQ(handoff_of_segment(segment.name()), Handoff::hardened);
+  EXPECT_EQ(handoff_of_segment(published.name()), Handoff::paper);
 }
 
 TEST(SharedMemoryPortManager, hands_out_one_port_for_each_name_not_opened_yet) {

@@ -67,6 +67,10 @@ class HardenedExchange : public testing::Test {
     const auto count = master_->get_response(into);
     return count ? text(std::span(into).first(*count)) : std::string(to_string(count.error()));
   }
+  void expect_no_answer(ExchangeOutcome outcome, SharedMemoryError why) {
+    EXPECT_EQ(read(), to_string(why));
+    EXPECT_EQ(master_->last_outcome(), outcome);
+  }
   void ring(const char* which) const {
     Doorbell bell;
     ASSERT_TRUE(bell.open(segment_.name() + which));
@@ -131,8 +135,7 @@ TEST_F(HardenedExchange, ends_unknown_when_the_answer_has_no_room) {
   open();
   ASSERT_TRUE(master_->write(bytes("ask")));
   serve("123456789");
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::unknown);
+  expect_no_answer(ExchangeOutcome::unknown, SharedMemoryError::damaged);
   EXPECT_EQ(segment_.word().phase, Phase::idle);
 }
 
@@ -158,8 +161,7 @@ TEST_F(HardenedExchange, needs_no_wait_once_it_is_answered_however_late) {
 TEST_F(HardenedExchange, withdraws_what_nobody_has_taken) {
   open();
   ASSERT_TRUE(master_->write(bytes("ask")));
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::not_executed);
+  expect_no_answer(ExchangeOutcome::not_executed, SharedMemoryError::not_executed);
   EXPECT_EQ(segment_.word(), (StateWord{Phase::idle, 2, 1}));
 }
 
@@ -167,8 +169,7 @@ TEST_F(HardenedExchange, gives_up_what_was_taken_and_its_outcome_is_unknown) {
   open();
   ASSERT_TRUE(master_->write(bytes("ask")));
   ASSERT_TRUE(slave_->wait_for_request());
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::unknown);
+  expect_no_answer(ExchangeOutcome::unknown, SharedMemoryError::unanswered);
   EXPECT_EQ(segment_.word(), (StateWord{Phase::orphan, 2, 1}));
   EXPECT_EQ(master_->write(bytes("next")), tl::unexpected(SharedMemoryError::slave_is_busy));
   EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::not_executed);
@@ -222,8 +223,7 @@ TEST_F(HardenedExchange, with_a_slave_that_stops_is_dropped_untaken) {
   ASSERT_TRUE(master_->write(bytes("ask")));
   slave_->close();
   EXPECT_EQ(segment_.word(), (StateWord{Phase::down, 2, 1}));
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::not_executed);
+  expect_no_answer(ExchangeOutcome::not_executed, SharedMemoryError::not_executed);
   EXPECT_EQ(master_->write(bytes("ask")), tl::unexpected(SharedMemoryError::no_slave));
 }
 
@@ -239,8 +239,7 @@ TEST_F(HardenedExchange, that_nobody_took_is_dropped_by_the_next_slave) {
   open();
   ASSERT_TRUE(master_->write(bytes("ask")));
   restart_slave();
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::not_executed);
+  expect_no_answer(ExchangeOutcome::not_executed, SharedMemoryError::not_executed);
   EXPECT_EQ(segment_.word(), (StateWord{Phase::idle, 3, 1}));
 }
 
@@ -250,8 +249,7 @@ TEST_F(HardenedExchange, that_a_dead_slave_had_taken_is_lost_and_its_outcome_unk
   ASSERT_TRUE(slave_->wait_for_request());
   restart_slave();
   EXPECT_EQ(segment_.word(), (StateWord{Phase::lost, 3, 1}));
-  EXPECT_EQ(read(), "");
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::unknown);
+  expect_no_answer(ExchangeOutcome::unknown, SharedMemoryError::slave_gone);
   EXPECT_EQ(segment_.word(), (StateWord{Phase::idle, 3, 1}));
 }
 
@@ -320,8 +318,7 @@ TEST_F(HardenedExchange, is_refused_by_a_slave_that_came_when_the_generation_had
   segment_.set_word(word);
   ASSERT_TRUE(master_->write(bytes("two")));
   expect_answered_unexecuted();
-  EXPECT_EQ(read(), to_string(SharedMemoryError::rejected));
-  EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::rejected);
+  expect_no_answer(ExchangeOutcome::rejected, SharedMemoryError::rejected);
   EXPECT_THAT(executed_, ElementsAre("one"));
 }
 
@@ -337,8 +334,7 @@ class AlteredRequest : public HardenedExchange {
     RawSegment memory(segment_.name());
     alter(memory);
     expect_answered_unexecuted();
-    EXPECT_EQ(read(), to_string(SharedMemoryError::rejected));
-    EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::rejected);
+    expect_no_answer(ExchangeOutcome::rejected, SharedMemoryError::rejected);
     EXPECT_EQ(segment_.word().phase, Phase::idle);
   }
 };
@@ -369,8 +365,7 @@ class AlteredResponse : public HardenedExchange {
     serve("answer");
     RawSegment memory(segment_.name());
     alter(memory);
-    EXPECT_EQ(read(), "");
-    EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::unknown);
+    expect_no_answer(ExchangeOutcome::unknown, SharedMemoryError::damaged);
     EXPECT_EQ(segment_.word().phase, Phase::idle);
     ASSERT_TRUE(master_->write(bytes("next")));
     serve("own");
@@ -431,8 +426,7 @@ TEST_F(HardenedExchange, with_a_state_word_that_nobody_has_made_ends_all_the_sam
     segment_.set_word({Phase::idle, 2, 0});
     ASSERT_TRUE(master_->write(bytes("ask")));
     segment_.set_word({phase, 2, 1});
-    EXPECT_EQ(read(), "");
-    EXPECT_EQ(master_->last_outcome(), ExchangeOutcome::unknown);
+    expect_no_answer(ExchangeOutcome::unknown, SharedMemoryError::damaged);
   }
   for (const Phase phase : {Phase::request, Phase::busy, Phase::response, Phase::orphan}) {
     segment_.set_word({phase, 2, 0});

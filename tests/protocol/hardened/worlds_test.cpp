@@ -38,6 +38,19 @@ std::vector<std::byte> bytes(std::string_view text) {
 std::string text(std::span<const std::byte> view) {
   return {reinterpret_cast<const char*>(view.data()), view.size()};
 }
+std::string_view name_of(SharedMemoryError why) {
+  switch (why) {
+    case SharedMemoryError::unanswered:
+      return ", unanswered";
+    case SharedMemoryError::slave_gone:
+      return ", slave gone";
+    case SharedMemoryError::damaged:
+      return ", damaged";
+    default:
+      return ", for no reason that there is";
+  }
+}
+
 std::string_view name_of(ExchangeOutcome outcome) {
   constexpr std::array<std::string_view, 4> names{"ok", "rejected", "not executed", "unknown"};
   return names.at(static_cast<std::size_t>(outcome));
@@ -87,6 +100,7 @@ void ask(Master& master, const std::string& request) {
   std::string outcome{name_of(result.outcome)};
   if (result.outcome == ExchangeOutcome::ok)
     outcome += ": " + text(std::span(answer).first(result.response_bytes));
+  if (result.outcome == ExchangeOutcome::unknown) outcome += name_of(result.why);
   play.outcomes.push_back(outcome);
 }
 
@@ -158,7 +172,7 @@ TEST_P(HardenedTimeOut, gives_up_what_is_not_answered_after_both_time_outs_and_n
   plan.options.queries_max = 0;
   plan.execution_time = 200ms;
   run_undisturbed();
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, unanswered"));
   EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(80ms), Lt(80ms + slack))));
   EXPECT_THAT(play.executed, ElementsAre("A"));
 }
@@ -186,7 +200,7 @@ TEST_P(HardenedTimeOut, bounds_a_query_as_well) {
   plan.options.answer_timeout = 50ms;
   plan.execution_time = 10s;
   run_undisturbed();
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, unanswered"));
   // The query waits for the slave to come back, and is not published.
   EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(110ms), Lt(110ms + slack))));
 }
@@ -197,7 +211,7 @@ TEST_P(HardenedTimeOut, of_a_query_leaves_the_outcome_unknown) {
   plan.execution_time = 100ms;
   plan.emulator_sleeps_after = 1min;
   run_undisturbed();
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, unanswered"));
   // The query is published at 100 ms and withdrawn at 110 ms; the request was executed.
   EXPECT_THAT(play.durations, ElementsAre(AllOf(Ge(110ms), Lt(110ms + slack))));
   EXPECT_THAT(play.executed, ElementsAre("A"));
@@ -246,7 +260,7 @@ TEST_P(HardenedTimeOut, leaves_a_query_whose_rejection_says_nothing_of_the_reque
                   run_play(world);
                 }),
             ltsim::Outcome{});
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, damaged"));
   EXPECT_THAT(play.executed, ElementsAre("A"));
 }
 
@@ -257,7 +271,7 @@ TEST_P(HardenedTimeOut, makes_the_next_request_wait_until_the_slave_has_dropped_
   plan.asked = {"A", "B"};
   run_undisturbed();
   // B is published at 150 ms, taken at once, and given up at 200 ms.
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown", "unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, unanswered", "unknown, unanswered"));
   EXPECT_THAT(play.durations,
               ElementsAre(AllOf(Ge(100ms), Lt(100ms + slack)), AllOf(Ge(100ms), Lt(100ms + slack))));
   EXPECT_THAT(play.executed, ElementsAre("A", "B"));
@@ -346,22 +360,34 @@ TEST_F(KilledEmulator, before_the_take_has_not_executed_the_request_and_nobody_w
 
 TEST_F(KilledEmulator, before_it_executes_leaves_the_outcome_unknown) {
   run_killing("emulator", "emulator/main before atomic_load segment.request-length #1");
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, slave gone"));
   EXPECT_THAT(play.executed, IsEmpty());
 }
 
 TEST_F(KilledEmulator, after_it_executed_leaves_the_outcome_unknown) {
   run_killing("emulator", "emulator/main before atomic_update segment.state #3");
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, slave gone"));
   EXPECT_THAT(play.executed, ElementsAre("A"));
 }
 
 TEST_F(KilledEmulator, with_a_request_that_was_given_up_leaves_its_outcome_unknown) {
-  plan.options.take_timeout = plan.options.answer_timeout = 10ms;
-  plan.execution_time = 25ms;
-  // Until the kernel's query; by then the next emulator is there, in another generation.
+  plan.options.take_timeout = 20ms;
+  plan.options.answer_timeout = 10ms;
+  plan.execution_time = 35ms;
+  // The kernel's query waits for the slave from 30 ms to 50 ms; at 40 ms the next emulator is there, in another generation.
   run_killing("emulator", "emulator/main before write segment.response #1");
-  EXPECT_THAT(play.outcomes, ElementsAre("unknown"));
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, slave gone"));
+  EXPECT_THAT(play.executed, ElementsAre("A"));
+}
+
+TEST_F(KilledEmulator, with_a_query_that_it_has_not_taken_leaves_the_outcome_unknown) {
+  plan.options.take_timeout = 30ms;
+  plan.options.answer_timeout = 50ms;
+  plan.execution_time = 100ms;
+  plan.emulator_sleeps_after = 1min;
+  // The first ring was for the request. By the next emulator the query is dropped, which says nothing of the request.
+  run_killing("emulator", "kernel/main before sem_post handoff.request #2");
+  EXPECT_THAT(play.outcomes, ElementsAre("unknown, slave gone"));
   EXPECT_THAT(play.executed, ElementsAre("A"));
 }
 
