@@ -91,9 +91,10 @@ class HardenedSides {
       handler_ = &handler;
       serving_task_ = ltsim::current_task->id;
       if (!stopped_) {
-        emulator_is_up_.exchange(1, std::memory_order_release);
+        told_.fetch_add(1, std::memory_order_release);
+        emulator_is_up_ = true;
         handler.run();
-        emulator_is_up_.exchange(0, std::memory_order_relaxed);
+        emulator_is_up_ = false;
       }
       handler_ = nullptr;
       while (stops_under_way_ != 0) std::this_thread::sleep_for(1ms);
@@ -104,8 +105,8 @@ class HardenedSides {
 
  private:
   void wait_for_emulator() {
-    while (emulator_is_up_.fetch_add(0, std::memory_order_acquire) == 0 && kernels_to_come_ != 0)
-      std::this_thread::sleep_for(1ms);
+    while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
+    told_.fetch_add(1, std::memory_order_acquire);
   }
 
   /// @return false: it is over
@@ -165,9 +166,9 @@ class HardenedSides {
   unsigned stops_under_way_ = 0;  // the handler must outlive them
   unsigned next_request_ = 1;
   unsigned kernels_to_come_;
-  /// Atomic: what the emulator did before it came up, the kernel sees that was told of it. Changed and looked at by
-  /// read-modify-writes alone, which see what is so now.
-  std::atomic<std::uint32_t> emulator_is_up_ = 0;
+  bool emulator_is_up_ = false;
+  /// What the emulator did before it came up, the kernel sees that was told of it: both change this.
+  std::atomic<std::uint32_t> told_ = 0;
   bool stopped_ = false;
 };
 
