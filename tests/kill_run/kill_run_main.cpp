@@ -5,8 +5,6 @@
 // was run until then is accounted for.
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -56,12 +54,8 @@ int run(const RunOptions& options) {
   fmt::print("{}", kill_run::to_text(result));
 
   const auto& accusations = result.accounts.accusations;
-  constexpr std::size_t shown_max = 10;
-  for (std::size_t i = 0; i < std::min(accusations.size(), shown_max); ++i)
-    fmt::print("{}\n", accusations[i]);
   if (!accusations.empty()) {
-    fmt::print("kill-run: {} accusations{}\n", accusations.size(),
-               accusations.size() > shown_max ? fmt::format(", the first {} above", shown_max) : "");
+    fmt::print("{}", kill_run::to_text(accusations));
     return exit_accused;
   }
   fmt::print("kill-run: every request is accounted for\n");

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <string_view>
 #include <vector>
@@ -76,6 +77,24 @@ std::string to_text(const RunResult& result) {
   text += quantiles("a fresh call, after a kill", tally.fresh_calls);
   text += quantiles("from a kill to the end of a fresh call", result.recoveries);
   return text;
+}
+
+std::string to_text(std::span<const std::string> accusations) {
+  constexpr std::size_t shown_max = 10;
+  std::string text;
+  for (const std::string& accusation : accusations.first(std::min(shown_max, accusations.size())))
+    fmt::format_to(std::back_inserter(text), "{}\n", accusation);
+  if (accusations.size() > shown_max) text += "...\n";
+  std::map<std::string_view, std::size_t> counts;
+  for (const std::string& accusation : accusations)
+    ++counts[std::string_view(accusation).substr(0, accusation.find(':'))];
+  text += "kill-run: accusations";
+  std::string_view separator = ": ";
+  for (const auto& [invariant, count] : counts) {
+    fmt::format_to(std::back_inserter(text), "{}{} of {}", separator, count, invariant);
+    separator = ", ";
+  }
+  return text + '\n';
 }
 
 }  // namespace kill_run

@@ -30,6 +30,7 @@ inline constexpr TimeOuts usual_time_outs;
 /// Of a fresh request, which must end ok: no busy machine delays a process for so long, a sleeper that nobody wakes
 /// sleeps for ever.
 inline constexpr TimeOuts fresh_time_outs{.take = std::chrono::seconds{4}, .answer = std::chrono::seconds{4}};
+inline constexpr std::chrono::seconds open_timeout{10};
 /// Longest execution, beyond the time-outs.
 inline constexpr std::chrono::microseconds work_max{20'000};
 
@@ -39,7 +40,7 @@ inline constexpr std::chrono::microseconds work_max{20'000};
   options.take_timeout = usual_time_outs.take;
   options.answer_timeout = usual_time_outs.answer;
   options.poll_interval = std::chrono::microseconds{20};
-  options.open_timeout = std::chrono::seconds{10};
+  options.open_timeout = open_timeout;
   options.rules = run.rules;
   return options;
 }

@@ -30,7 +30,7 @@ constexpr std::size_t entries_least = 1U << 20U;
 
 /// I17: restart, what an old call still takes, the fresh call, and what a busy machine adds to each.
 const nanoseconds recovery_bound = call_bound(usual_time_outs) + call_bound(fresh_time_outs) + work_max +
-                                   hardened::Options{}.open_timeout + 3 * scheduling_allowance;
+                                   open_timeout + 3 * scheduling_allowance;
 constexpr nanoseconds good_order_bound = 20s;
 
 /// From the last start or recovery to a kill from outside; the earliest is a thousandth of the latest.
