@@ -269,11 +269,11 @@ bool measure(std::span<Contestant> contestants, std::size_t payload_bytes, unsig
 }  // namespace
 
 int main(int argc, char** argv) {
-  unsigned rounds = 400;
+  unsigned rounds = 600;
   unsigned exchanges = 10;
-  for (int i = 1; i + 1 < argc; i += 2) {
+  for (int i = 1; i < argc; i += 2) {
     const std::string_view option = argv[i];
-    const auto count = static_cast<unsigned>(std::strtoul(argv[i + 1], nullptr, 10));
+    const auto count = i + 1 < argc ? static_cast<unsigned>(std::strtoul(argv[i + 1], nullptr, 10)) : 0U;
     if (option == "--rounds" && count > 0) {
       rounds = count;
     } else if (option == "--exchanges" && count > 0) {

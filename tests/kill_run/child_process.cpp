@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -52,12 +53,18 @@ void ChildProcess::send(int signal) noexcept { ::kill(pid_, signal); }
 
 std::optional<Ending> ChildProcess::wait_for(std::chrono::nanoseconds timeout) noexcept {
   if (ending_) return ending_;
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
-  const timespec limit{.tv_sec = static_cast<std::time_t>(seconds.count()),
-                       .tv_nsec = static_cast<long>((timeout - seconds).count())};
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + timeout;
   pollfd ended{.fd = handle_, .events = POLLIN, .revents = 0};
-  // A signal may end the wait early: then it still runs, which the caller has to reckon with anyway.
-  if (::ppoll(&ended, 1, &limit, nullptr) <= 0) return std::nullopt;
+  for (;;) {
+    const auto left = std::max<std::chrono::nanoseconds>(deadline - Clock::now(), {});
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+    const timespec limit{.tv_sec = static_cast<std::time_t>(seconds.count()),
+                         .tv_nsec = static_cast<long>((left - seconds).count())};
+    const int found = ::ppoll(&ended, 1, &limit, nullptr);
+    if (found > 0) break;
+    if (found == 0) return std::nullopt;  // otherwise a signal has ended the wait
+  }
   int status = 0;
   ::waitpid(pid_, &status, 0);
   ending_ = WIFSIGNALED(status) ? Ending{.by_signal = true, .code = WTERMSIG(status)}
