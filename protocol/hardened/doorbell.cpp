@@ -1,42 +1,56 @@
 #include "protocol/hardened/doorbell.hpp"
 
-#include <fcntl.h>
-
-#include <utility>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 
 #include "protocol/deadline.hpp"
 
 namespace protocol::hardened {
 
+struct Doorbell::Layout {
+  sem_t semaphore;
+  std::atomic<std::uint32_t> is_made;
+};
+
 bool Doorbell::open(const std::string& name) noexcept {
+  static_assert(offsetof(Layout, is_made) == 32, "both processes map this layout");
+  static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "a lock cannot span processes");
   close();
-  constexpr mode_t owner_only = 0600;
-  sem_t* const opened = ::sem_open(('/' + name).c_str(), O_CREAT, owner_only, 0U);
-  if (opened == SEM_FAILED) return false;
-  semaphore_ = opened;
+  if (memory_.open(name, sizeof(Layout))) return false;
+  Layout& found = layout();
+  // Openers take turns, so nobody sees it half made; release, so that one who is killed here has not said so too early.
+  if (found.is_made.load(std::memory_order_relaxed) == 0) {
+    constexpr int between_processes = 1;
+    if (::sem_init(&found.semaphore, between_processes, 0) != 0) {
+      close();
+      return false;
+    }
+    found.is_made.store(1, std::memory_order_release);
+  }
   return true;
 }
 
-void Doorbell::close() noexcept {
-  if (semaphore_ != nullptr) ::sem_close(std::exchange(semaphore_, nullptr));
-}
+void Doorbell::ring() const noexcept { static_cast<void>(::sem_post(semaphore())); }
 
-bool Doorbell::remove(const std::string& name) noexcept { return ::sem_unlink(('/' + name).c_str()) == 0; }
-
-void Doorbell::ring() const noexcept { static_cast<void>(::sem_post(semaphore_)); }
-
-void Doorbell::wait() const noexcept { static_cast<void>(::sem_wait(semaphore_)); }
+void Doorbell::wait() const noexcept { static_cast<void>(::sem_wait(semaphore())); }
 
 void Doorbell::wait_until(std::chrono::steady_clock::time_point deadline) const noexcept {
   const timespec until = on_monotonic_clock(deadline);
-  static_cast<void>(::sem_clockwait(semaphore_, CLOCK_MONOTONIC, &until));
+  static_cast<void>(::sem_clockwait(semaphore(), CLOCK_MONOTONIC, &until));
 }
 
-bool Doorbell::try_take() const noexcept { return ::sem_trywait(semaphore_) == 0; }
+bool Doorbell::try_take() const noexcept { return ::sem_trywait(semaphore()) == 0; }
 
 void Doorbell::empty() const noexcept {
   while (try_take()) {
   }
 }
+
+Doorbell::Layout& Doorbell::layout() const noexcept {
+  return *static_cast<Layout*>(memory_.region.get_address());
+}
+
+sem_t* Doorbell::semaphore() const noexcept { return &layout().semaphore; }
 
 }  // namespace protocol::hardened

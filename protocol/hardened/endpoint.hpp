@@ -1,8 +1,8 @@
 // What both sides of the hardened handoff have: the role, the named objects, the areas, and the single moves of the
 // state word.
 //
-// A segment called NAME is the shared memory objects NAME and NAME.roles, and the semaphores NAME.request and
-// NAME.response (the second one only with two doorbells). Fresh memory is all zeros, so its state word is RAW, which is
+// A segment called NAME is the shared memory objects NAME and NAME.roles, and the doorbells NAME.request and
+// NAME.response (the second one only with two). Fresh memory is all zeros, so its state word is RAW, which is
 // all the initialisation that it needs: a slave's attach makes it IDLE. An object that is there already is used as it
 // stands, never judged by its content or its age.
 //

@@ -32,11 +32,10 @@ struct Header {
 
 std::uint32_t checksum_of(std::span<const std::byte> message) noexcept {
   constexpr std::array<std::byte, header_bytes - checksum_offset> in_place_of_checksum{};
-  const auto payload = message.subspan(header_bytes);
   Crc32c checksum;
-  checksum.process_bytes(message.data(), checksum_offset);
-  checksum.process_bytes(in_place_of_checksum.data(), in_place_of_checksum.size());
-  checksum.process_bytes(payload.data(), payload.size());
+  checksum.process(message.first(checksum_offset));
+  checksum.process(in_place_of_checksum);
+  checksum.process(message.subspan(header_bytes));
   return checksum.checksum();
 }
 

@@ -1,8 +1,8 @@
 // Names of the things that tasks act on, for schedules, traces and messages.
 //
 // A schedule anchors its lines to these names, so they must not depend on addresses or on the build: a
-// semaphore and a segment go by the name they were opened with, a region of a segment by the name the
-// scenario gave it, a mutex by the order of first use.
+// semaphore and a segment go by the name they were opened with, a semaphore that begins a segment by the
+// segment's, a region of a segment by the name the scenario gave it, a mutex by the order of first use.
 #pragma once
 
 #include <cstddef>

@@ -83,10 +83,17 @@ int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
     errno = EINVAL;
     return -1;
   }
-  std::memcpy(handle, &create({}, fmt::format("semaphore-{}", count_ + 1), value), sizeof(Handle));
+  std::memcpy(handle, &create({}, name_by_place(handle), value), sizeof(Handle));
   world_.segments().accept_change(handle, sizeof(Handle));
   semaphores_[count_ - 1].shared = shared;
   return 0;
+}
+
+std::string Semaphores::name_by_place(const sem_t* handle) const {
+  const bool begins_a_segment =
+      Segments::contains(handle) && Segments::offset_in_segment(Segments::place_of(handle)) == 0;
+  if (!begins_a_segment) return fmt::format("semaphore-{}", count_ + 1);
+  return std::string{world_.objects().object_name(world_.segments().segment_at(Segments::place_of(handle)))};
 }
 
 int Semaphores::destroy(sem_t* handle) noexcept {
@@ -193,7 +200,7 @@ sem_t& Semaphores::create(std::string_view name, std::string_view shown_name, un
   semaphore.shared = true;
   semaphore.value_meant_max = value_max;
   for (const Bound& bound : bounds_) {
-    if (bound.name == name) semaphore.value_meant_max = bound.count_max;
+    if (bound.name == shown_name) semaphore.value_meant_max = bound.count_max;
   }
   if (value > semaphore.value_meant_max) exceeds_bound(semaphore, value);
   sem_t& handle = handles_[count_];

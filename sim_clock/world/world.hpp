@@ -164,7 +164,7 @@ class World {
   }
 
   /// More tokens than that in a semaphore, once it has been opened or posted, end the execution.
-  /// @param semaphore  its name, without '/'; it is opened later
+  /// @param semaphore  its name, without '/', or that of the segment that it begins; it is opened later
   /// @param count_max  0 to SEM_VALUE_MAX
   void bound_semaphore(std::string_view semaphore, unsigned count_max) {
     semaphores_.bound(semaphore, count_max);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <semaphore.h>
+#include <sys/mman.h>
 
 #include <atomic>
 #include <cstdint>
@@ -55,6 +56,25 @@ TEST_F(SemaphoreBoundTest, is_not_broken_by_what_is_taken_between) {
               });
             }),
             Outcome{});
+}
+
+TEST_F(SemaphoreBoundTest,
+       holds_for_the_semaphore_that_begins_the_segment_of_that_name_and_for_no_other_in_it) {
+  const auto post_in_segment = [](std::size_t index) {
+    return run([index](World& world) {
+      world.bound_semaphore("bell", 1);
+      world.process("p").start("main", [index] {
+        const int descriptor = shm_open("/bell", O_CREAT | O_RDWR, 0600);
+        static_cast<void>(ftruncate(descriptor, 4096));
+        auto* const semaphores =
+            static_cast<sem_t*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0));
+        sem_init(semaphores + index, 1, 0);
+        for (int i = 0; i < 2; ++i) sem_post(semaphores + index);
+      });
+    });
+  };
+  EXPECT_EQ(post_in_segment(0).message, "semaphore bell has count 2, at most 1 is meant (I10)");
+  EXPECT_EQ(post_in_segment(1), Outcome{});
 }
 
 TEST_F(SemaphoreBoundTest, ends_with_the_execution) {

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <boost/crc.hpp>
 
 #include "protocol/hardened/crc32c.hpp"
 #include "protocol/hardened/message.hpp"
@@ -53,7 +56,7 @@ MessageError error_of_request(const Bytes& message) { return decode_request(mess
 Bytes resealed(Bytes message) {
   for (std::size_t i = 36; i < 40; ++i) message[i] = std::byte{0};
   Crc32c checksum;
-  checksum.process_bytes(message.data(), message.size());
+  checksum.process(message);
   const std::uint32_t sum = checksum.checksum();
   for (unsigned i = 0; i < 4; ++i) message[36 + i] = static_cast<std::byte>(sum >> 8 * i);
   return message;
@@ -66,8 +69,24 @@ Bytes altered(Bytes message, std::size_t offset, unsigned value) {
 
 TEST(Crc32c, has_the_check_value_of_the_literature) {  // RFC 3720; "123456789"
   Crc32c checksum;
-  checksum.process_bytes("123456789", 9);
+  checksum.process(bytes("123456789"));
   EXPECT_EQ(checksum.checksum(), 0xE3069283U);
+}
+
+TEST(Crc32c, is_that_of_another_implementation_whatever_the_length_and_the_pieces) {
+  Bytes all(64);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(37 * i + 11);
+  for (std::size_t length = 0; length <= all.size(); ++length) {
+    const auto message = std::span(all).first(length);
+    boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> other;
+    other.process_bytes(message.data(), message.size());
+    for (std::size_t first = 0; first <= length; ++first) {
+      Crc32c checksum;
+      checksum.process(message.first(first));
+      checksum.process(message.subspan(first));
+      ASSERT_EQ(checksum.checksum(), other.checksum()) << length << " bytes, " << first << " of them first";
+    }
+  }
 }
 
 TEST(Message, is_encoded_as_in_the_worked_examples) {
