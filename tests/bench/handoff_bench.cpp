@@ -95,6 +95,8 @@ class BareSlave final : public ExchangeSlave {
  public:
   explicit BareSlave(PingPong& shared) : shared_(shared) {}
 
+  [[nodiscard]] tl::expected<void, protocol::SharedMemoryError> open() noexcept override { return {}; }
+  void close() noexcept override {}
   [[nodiscard]] bool wait_for_request() noexcept override { return ::sem_wait(&shared_.ping) == 0; }
   [[nodiscard]] std::span<const std::byte> read_request() noexcept override {
     request_ = shared_.ping_area;
