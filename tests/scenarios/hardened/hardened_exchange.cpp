@@ -26,7 +26,7 @@ namespace hardened = protocol::hardened;
 
 constexpr const char* segment = "handoff";
 constexpr std::size_t payload_bytes_max = 16;
-constexpr auto time_to_spare = 5s;  // for each stage of a call
+constexpr auto time_to_spare = 1s;  // for each stage of a call
 
 hardened::Options options_of(const HardenedExchange& exchange) {
   hardened::Options options = exchange.options;
@@ -105,8 +105,10 @@ class HardenedSides {
 
  private:
   void wait_for_emulator() {
-    while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
-    told_.fetch_add(1, std::memory_order_acquire);
+    do {
+      while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
+      told_.fetch_add(1, std::memory_order_acquire);
+    } while (!emulator_is_up_ && kernels_to_come_ != 0);  // it may have stopped at that step
   }
 
   /// @return false: it is over
