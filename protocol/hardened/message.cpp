@@ -32,11 +32,7 @@ struct Header {
 
 std::uint32_t checksum_of(std::span<const std::byte> message) noexcept {
   constexpr std::array<std::byte, header_bytes - checksum_offset> in_place_of_checksum{};
-  Crc32c checksum;
-  checksum.process(message.first(checksum_offset));
-  checksum.process(in_place_of_checksum);
-  checksum.process(message.subspan(header_bytes));
-  return checksum.checksum();
+  return crc32c({message.first(checksum_offset), in_place_of_checksum, message.subspan(header_bytes)});
 }
 
 std::span<const std::byte> encode(const Header& header, std::span<const std::byte> payload,

@@ -83,9 +83,9 @@ class Semaphores {
 
   /// Ends the execution: the semaphore would have the count `value`.
   void exceeds_bound(const Semaphore& semaphore, std::uint64_t value);
-  /// @return its handle
   /// How messages call a semaphore without a name: one that begins a segment by the segment's.
   [[nodiscard]] std::string name_by_place(const sem_t* handle) const;
+  /// @return its handle
   sem_t& create(std::string_view name, std::string_view shown_name, unsigned value);
   [[nodiscard]] Semaphore* find(std::string_view name) noexcept;
   /// Ends the execution as a crash if the memory holds no semaphore of this execution.

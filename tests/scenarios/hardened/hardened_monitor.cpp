@@ -162,7 +162,7 @@ void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
                          held_up_.count());
     });
   }
-  const bool had_its_time = held_up_ + time_to_react < std::min(take_timeout_, answer_timeout_);
+  const bool had_its_time = held_up_ + time_to_see < std::min(take_timeout_, answer_timeout_);
   const bool is_excused = slave_has_changed || a_ring_was_lost();
   if (exchange.has_time_to_spare && had_its_time && !is_excused && outcome != Outcome::ok) {
     violated({"I17"}, [&] {

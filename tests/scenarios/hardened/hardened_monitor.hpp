@@ -96,6 +96,9 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   /// What a call may need besides its time-outs: steps of all tasks, and a pause between two looks in each stage.
   static constexpr ltsim::SimTime time_to_react = std::chrono::milliseconds{20};
+  /// What a request with time to spare needs of it: with weak memory a store may be unseen for 64 looks, and a look comes each
+  /// millisecond.
+  static constexpr ltsim::SimTime time_to_see = std::chrono::milliseconds{100};
 
   /// Who plays a role; nobody at first.
   struct Holder {

@@ -152,6 +152,7 @@ TEST_F(HardenedMonitorTest, names_a_state_word_that_is_not_what_it_was_made) {
 TEST_F(HardenedMonitorTest, names_a_request_that_had_time_to_spare_and_did_not_end_ok) {
   EXPECT_EQ(verdict("I17",
                     [](HardenedMonitor& monitor) {
+                      monitor.set_timeouts(1s, 1s);
                       monitor.next_has_time_to_spare();
                       ask(monitor, "1");
                       monitor.ended(Outcome::not_executed);
@@ -238,8 +239,8 @@ TEST_F(HardenedMonitorTest, excuses_a_request_for_all_of_whose_time_somebody_was
       monitor.ended(Outcome::not_executed);
     });
   };
-  EXPECT_EQ(held_up_for(1s), "");
-  EXPECT_EQ(held_up_for(900ms), "I17: request 1 had time to spare, and ended not executed");
+  EXPECT_EQ(held_up_for(950ms), "");
+  EXPECT_EQ(held_up_for(850ms), "I17: request 1 had time to spare, and ended not executed");
 }
 
 TEST_F(HardenedMonitorTest, names_an_end_that_is_none_or_comes_twice_or_has_no_reason) {
