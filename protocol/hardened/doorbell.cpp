@@ -8,6 +8,13 @@
 
 namespace protocol::hardened {
 
+namespace {
+
+/// Far more than the few that requests, attaches and stops leave behind (I10). Half a minute would pass with SEM_VALUE_MAX.
+constexpr unsigned emptied_rings_max = 1024;
+
+}  // namespace
+
 struct Doorbell::Layout {
   sem_t semaphore;
   std::atomic<std::uint32_t> is_made;
@@ -43,7 +50,7 @@ void Doorbell::wait_until(std::chrono::steady_clock::time_point deadline) const 
 bool Doorbell::try_take() const noexcept { return ::sem_trywait(semaphore()) == 0; }
 
 void Doorbell::empty() const noexcept {
-  while (try_take()) {
+  for (unsigned taken = 0; taken < emptied_rings_max && try_take(); ++taken) {
   }
 }
 

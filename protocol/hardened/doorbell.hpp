@@ -47,7 +47,8 @@ class Doorbell {
   /// Takes one ring back.
   /// @return whether there was one
   bool try_take() const noexcept;
-  /// Takes every ring back that is there.
+  /// Takes every ring back that is there; of more than there can be between two sides that keep to the protocol, some stay. They
+  /// mean nothing, and who empties must come to an end.
   void empty() const noexcept;
 
  private:

@@ -103,7 +103,11 @@ Master::Published Master::publish(bool is_query) noexcept {
                                         request_, message_));
     if (!options().rules.query_from_first_generation) found = look();
     const StateWord published = found.publishing(sequence_);
-    if (!move(found, published, options().orders.publish)) continue;
+    if (!move(found, published, options().orders.publish)) {
+      // Somebody who changes the word faster than the area is filled must not keep the call for good.
+      if (Clock::now() >= exchange_->take_by) return Published::slave_is_busy;
+      continue;
+    }
     observer().published();
     exchange_->published = published;
     request_bell().ring();
