@@ -2,7 +2,7 @@
 // no business there, and the script of what he does with them, which is read from the input as far as it is wanted.
 //
 //   script   any number of deeds, one byte each (its remainder by 9) and what belongs to it:
-//     0      nothing more for now; so does the end of the input
+//     0      the end of what he does at this step; so is the end of the input
 //     1 w4   the state word becomes w
 //     2 a    phase a % 8 into the state word, a / 8 % 4 added to its generation, a / 32 % 8 to its sequence
 //     3 at2 n b...       n % 64 bytes from `at` on, a remainder

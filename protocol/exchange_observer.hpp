@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace protocol {
 
@@ -19,6 +20,20 @@ enum class ExchangeOutcome : std::uint8_t {
   not_executed,  ///< it is certain that the slave has not executed it and never will
   unknown,       ///< given up: it may have been executed, or may yet be
 };
+
+[[nodiscard]] inline std::string_view to_string(ExchangeOutcome outcome) noexcept {
+  switch (outcome) {
+    case ExchangeOutcome::ok:
+      return "ok";
+    case ExchangeOutcome::rejected:
+      return "rejected";
+    case ExchangeOutcome::not_executed:
+      return "not executed";
+    case ExchangeOutcome::unknown:
+      return "unknown";
+  }
+  return "";
+}
 
 class ExchangeObserver {
  public:

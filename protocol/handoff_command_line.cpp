@@ -65,7 +65,7 @@ void add_hardened_options(CLI::App& app, hardened::Options& options, HandoffSide
                                  "(default two; both sides must be told the same)")
       ->group(hardened_group);
   if (side == HandoffSide::emulator) return;
-  options.take_timeout = std::chrono::milliseconds{200};
+  options.take_timeout = std::chrono::milliseconds{200};  // as long as --read-timeout-ms gives the answer
   add_milliseconds(
       app, "--take-timeout-ms", options.take_timeout,
       "Longest wait until the PLC has taken a request; then it is withdrawn, and was not executed")

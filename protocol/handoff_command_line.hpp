@@ -1,7 +1,8 @@
 // Command-line options of the handoff over shared memory, the same in every program that takes part in it: which one, and
 // what each leaves to be chosen. Both sides must be told the same.
 //
-// An option of one handoff that is given with the other is refused: it would be without effect.
+// An option of one handoff that is given with the other is refused: it would be without effect. What a program says of a segment
+// that does not go with its options stands here, too, as it names them.
 #pragma once
 
 #include <cstdint>

@@ -23,20 +23,6 @@ double milliseconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-std::string_view to_string(ExchangeOutcome outcome) {
-  switch (outcome) {
-    case ExchangeOutcome::ok:
-      return "ok";
-    case ExchangeOutcome::rejected:
-      return "rejected";
-    case ExchangeOutcome::not_executed:
-      return "not executed";
-    case ExchangeOutcome::unknown:
-      return "unknown";
-  }
-  return "an outcome that is none";
-}
-
 /// All that is known of one request.
 struct Story {
   Entry submitted;

@@ -51,18 +51,4 @@ class Verdict {
   return text.empty() ? "nothing" : text;
 }
 
-[[nodiscard]] inline std::string_view to_string(protocol::ExchangeOutcome outcome) noexcept {
-  switch (outcome) {
-    case protocol::ExchangeOutcome::ok:
-      return "ok";
-    case protocol::ExchangeOutcome::rejected:
-      return "rejected";
-    case protocol::ExchangeOutcome::not_executed:
-      return "not executed";
-    case protocol::ExchangeOutcome::unknown:
-      return "unknown";
-  }
-  return "";
-}
-
 }  // namespace scenarios

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/sim_clock/faults_fixture.hpp"
 
@@ -162,6 +163,33 @@ TEST_F(ProcessStallTest, no_more_often_than_granted) {
       stalls += line.kind == Deviation::Kind::fault && line.fault == FaultKind::process_stall ? 1U : 0U;
     EXPECT_LE(stalls, 2U);
   }
+}
+
+/// Of the last execution.
+SimTime held_up{};
+
+/// One task sleeps for 10 ms, one takes a step and may be kept from it.
+void a_sleeper_and_a_worker(World& world) {
+  held_up = SimTime{0};
+  world.whenever_held_up([](SimTime duration) { held_up += duration; });
+  world.process("sleeper").start("main", [] { std::this_thread::sleep_for(10ms); });
+  world.process("worker").may_stall(1);
+  world.process("worker").start("main", [] {
+    sched_yield();
+    sched_yield();
+  });
+  world.run();
+}
+
+TEST_F(ProcessStallTest, time_for_which_somebody_could_have_gone_on_is_told) {
+  const auto held_up_with = [](const std::vector<std::string>& lines) {
+    EXPECT_EQ(run_with(lines, a_sleeper_and_a_worker), Outcome{});
+    return held_up;
+  };
+  EXPECT_EQ(held_up_with({}), 0ms) << "who sleeps is not held up";
+  EXPECT_EQ(held_up_with({"time worker/main before yield - #2 +3ms"}), 3ms);
+  EXPECT_EQ(held_up_with({"stall worker/main before yield - #2 +3ms"}), 3ms);
+  EXPECT_EQ(held_up_with({"fault worker/main before yield - #2 process-stall 1"}), 1ms);
 }
 
 }  // namespace

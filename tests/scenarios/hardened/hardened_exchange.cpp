@@ -91,7 +91,7 @@ class HardenedSides {
       handler_ = &handler;
       serving_task_ = ltsim::current_task->id;
       if (!stopped_) {
-        told_.fetch_add(1, std::memory_order_release);
+        meetings_.fetch_add(1, std::memory_order_release);
         emulator_is_up_ = true;
         handler.run();
         emulator_is_up_ = false;
@@ -107,7 +107,7 @@ class HardenedSides {
   void wait_for_emulator() {
     do {
       while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
-      told_.fetch_add(1, std::memory_order_acquire);
+      meetings_.fetch_add(1, std::memory_order_acquire);
     } while (!emulator_is_up_ && kernels_to_come_ != 0);  // it may have stopped at that step
   }
 
@@ -169,8 +169,8 @@ class HardenedSides {
   unsigned next_request_ = 1;
   unsigned kernels_to_come_;
   bool emulator_is_up_ = false;
-  /// What the emulator did before it came up, the kernel sees that was told of it: both change this.
-  std::atomic<std::uint32_t> told_ = 0;
+  /// Added to by who comes up and by who has seen that: read-modify-writes, so what the first did before is seen by the second.
+  std::atomic<std::uint32_t> meetings_ = 0;
   bool stopped_ = false;
 };
 

@@ -33,7 +33,7 @@ class SetUpTest : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(SetUpTest, breaks_no_invariant_with_either_memory) {
   for (const ltsim::Memory memory : {ltsim::Memory::sc, ltsim::Memory::c11}) {
-    const auto report = explore(GetParam(), 1, 3'000, memory);
+    const auto report = explore(GetParam(), 1, 5'000, memory);
     EXPECT_TRUE(report.failures.empty()) << report.failures.front().outcome.message << '\n'
                                          << to_string(report.failures.front().schedule);
   }
