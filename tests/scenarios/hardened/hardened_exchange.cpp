@@ -91,7 +91,7 @@ class HardenedSides {
       handler_ = &handler;
       serving_task_ = ltsim::current_task->id;
       if (!stopped_) {
-        meetings_.fetch_add(1, std::memory_order_release);
+        if (may_open_before_emulator()) meetings_.fetch_add(1, std::memory_order_release);
         emulator_is_up_ = true;
         handler.run();
         emulator_is_up_ = false;
@@ -107,8 +107,14 @@ class HardenedSides {
   void wait_for_emulator() {
     do {
       while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
-      meetings_.fetch_add(1, std::memory_order_acquire);
+      if (may_open_before_emulator()) meetings_.fetch_add(1, std::memory_order_acquire);
     } while (!emulator_is_up_ && kernels_to_come_ != 0);  // it may have stopped at that step
+  }
+
+  /// Then nothing in the protocol makes the kernel see that the emulator has attached when it is told so: a store is seen after
+  /// some time. Otherwise the locks for opening do, and nothing else may.
+  [[nodiscard]] bool may_open_before_emulator() const {
+    return exchange_.opens_together || exchange_.emulator_stops;
   }
 
   /// @return false: it is over

@@ -87,8 +87,9 @@ constexpr std::array set_ups{
           {.requests = 2, .kernel_kills = 1, .emulator_stops = true}},
     SetUp{"hardened/lost-rings", "two requests, time-outs; posts are lost", {.requests = 2, .lost_rings = 2}},
     SetUp{"hardened/clock-steps",
-          "two requests, time-outs; the wall clock is set, forward and back; the emulator is killed once",
-          {.requests = 2, .emulator_kills = 1, .clock_steps = 3}},
+          "two requests, time-outs; the wall clock is set, forward and back; the emulator is killed once, a "
+          "post lost",
+          {.requests = 2, .emulator_kills = 1, .lost_rings = 1, .clock_steps = 3}},
     SetUp{"hardened/foreign-writes",
           "somebody else writes into the segment: nothing is executed that was not submitted",
           {.requests = 2, .emulator_kills = 1, .foreign_writes = 4, .only = "I3"}},
