@@ -1,11 +1,36 @@
 #include "sim_clock/scenario/interrupt.hpp"
 
+#include <time.h>
+
+#include <atomic>
+#include <cstdint>
+
 namespace ltsim {
 namespace {
 
-volatile std::sig_atomic_t signal_that_came = 0;
+// timeout(1) sends its signal to the program and at once again to all of its group: that is one request.
+constexpr std::int64_t nanoseconds_of_one_request = 1'000'000'000;
 
-void note(int signal) { signal_that_came = signal; }
+volatile std::sig_atomic_t signal_that_came = 0;
+std::atomic<std::int64_t> came_at = 0;  // by the monotonic clock, in nanoseconds
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler uses it");
+
+std::int64_t monotonic_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+// Only calls that POSIX allows in a signal handler.
+void note(int signal) {
+  if (signal_that_came == 0) {
+    came_at = monotonic_nanoseconds();
+    signal_that_came = signal;
+  } else if (monotonic_nanoseconds() - came_at > nanoseconds_of_one_request) {
+    ::signal(signal, SIG_DFL);
+    raise(signal);
+  }
+}
 
 }  // namespace
 
@@ -13,7 +38,8 @@ InterruptGuard::InterruptGuard() {
   signal_that_came = 0;
   struct sigaction action{};
   action.sa_handler = &note;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaddset(&action.sa_mask, SIGINT);
+  sigaddset(&action.sa_mask, SIGTERM);
   sigaction(SIGINT, &action, &previous_int_);
   sigaction(SIGTERM, &action, &previous_term_);
 }

@@ -5,7 +5,8 @@
 
 namespace ltsim {
 
-/// While it lives, the first of these signals only sets signal(); the second ends the program. One at a time.
+/// While it lives, the first of these signals only sets signal(); one that comes more than a second later ends the program. One
+/// guard at a time.
 class InterruptGuard {
  public:
   InterruptGuard();
