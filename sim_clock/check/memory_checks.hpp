@@ -17,8 +17,10 @@ namespace ltsim {
 
 class MemoryChecks {
  public:
-  /// @param memory  all segments, one after the other, by SharedPlace; outlives this
-  explicit MemoryChecks(const std::byte* memory) : watch_(memory) {}
+  /// @param memory        all segments, one after the other, by SharedPlace; outlives this
+  /// @param places_count  of all shared memory: a multiple of 8
+  MemoryChecks(const std::byte* memory, std::size_t places_count)
+      : races_(order_, places_count), watch_(memory) {}
   /// Forgets the last execution, but not what the exploration has seen.
   void reset() noexcept;
 
@@ -56,6 +58,11 @@ class MemoryChecks {
     const RaceDetector::LastWrite last = races_.access(access);
     if (reads) coverage_.reads_from(last, access);
   }
+  [[nodiscard]] bool was_accessed_by_others(SharedPlace place, TaskId task) const noexcept {
+    return races_.was_accessed_by_others(place, task);
+  }
+  /// Something else lies there from now on.
+  void made_anew(SharedPlace place, std::size_t bytes) noexcept { races_.forget(place, bytes); }
   /// An atomic access has been made.
   /// @param canonical_address  Segments::canonical(), which names it also outside of segments
   /// @param shared             it lies in a segment, at `where.place`
@@ -100,7 +107,7 @@ class MemoryChecks {
   bool wanted_on_ = true;
   bool races_allowed_ = false;
   HappensBefore order_;
-  RaceDetector races_{order_};
+  RaceDetector races_;
   MemoryWatch watch_;
   Coverage coverage_;
 };

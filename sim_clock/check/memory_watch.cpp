@@ -13,13 +13,13 @@ static_assert(std::endian::native == std::endian::little, "a mask's low byte is 
 
 MemoryWatch::MemoryWatch(const std::byte* memory) : memory_(reinterpret_cast<const std::uint64_t*>(memory)) {
   // New segments hold zeros, and so does this; memory comes with use.
-  void* const copy = mmap(nullptr, RaceDetector::places_count, PROT_READ | PROT_WRITE,
+  void* const copy = mmap(nullptr, segment_places_count, PROT_READ | PROT_WRITE,
                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   LTSIM_CHECK(copy != MAP_FAILED);
   expected_ = static_cast<std::uint64_t*>(copy);
 }
 
-MemoryWatch::~MemoryWatch() { munmap(expected_, RaceDetector::places_count); }
+MemoryWatch::~MemoryWatch() { munmap(expected_, segment_places_count); }
 
 void MemoryWatch::accept(SharedPlace place, std::size_t bytes) noexcept {
   settle();

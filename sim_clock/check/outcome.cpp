@@ -20,6 +20,8 @@ std::string_view to_string(OutcomeKind kind) noexcept {
       return "leak";
     case OutcomeKind::crash:
       return "crash";
+    case OutcomeKind::exit:
+      return "exit";
     case OutcomeKind::unsupported:
       return "unsupported";
   }

@@ -14,8 +14,9 @@ enum class OutcomeKind : std::uint8_t {
   deadlock,     ///< no task can run and no timer is armed
   livelock,     ///< more scheduling points than the scenario allows
   data_race,    ///< two accesses to shared memory, one of them a plain one, that nothing orders
-  leak,         ///< a lock is held at the end
-  crash,        ///< an exception nobody caught, a signal
+  leak,         ///< a lock is held at the end; a block of memory is lost
+  crash,        ///< an exception nobody caught, a signal; memory that is not there (any more)
+  exit,         ///< a whole program ended with a status other than 0
   unsupported,  ///< a call that the world does not simulate: our limit, not a finding
 };
 

@@ -15,15 +15,16 @@ static_assert(tasks_max <= 256, "a cell keeps its task in one byte");
 
 }  // namespace
 
-RaceDetector::RaceDetector(const HappensBefore& order) : order_(order), cells_(256) {
+RaceDetector::RaceDetector(const HappensBefore& order, std::size_t places_count)
+    : order_(order), granules_bytes_(places_count / granule_bytes * sizeof(Granule)), cells_(256) {
   static_assert(sizeof(Cell) == 16 && sizeof(Granule) == 16);
-  void* const memory = mmap(nullptr, places_count / granule_bytes * sizeof(Granule), PROT_READ | PROT_WRITE,
+  void* const memory = mmap(nullptr, granules_bytes_, PROT_READ | PROT_WRITE,
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   LTSIM_CHECK(memory != MAP_FAILED);
   granules_ = static_cast<Granule*>(memory);
 }
 
-RaceDetector::~RaceDetector() { munmap(granules_, places_count / granule_bytes * sizeof(Granule)); }
+RaceDetector::~RaceDetector() { munmap(granules_, granules_bytes_); }
 
 void RaceDetector::reset() noexcept {
   cells_count_ = 1;
@@ -31,7 +32,7 @@ void RaceDetector::reset() noexcept {
   race_.reset();
   if (++generation_ != 0) return;
   // Once in 2^32 executions: what is older than that must not seem to be of this one.
-  madvise(granules_, places_count / granule_bytes * sizeof(Granule), MADV_DONTNEED);
+  madvise(granules_, granules_bytes_, MADV_DONTNEED);
   generation_ = 1;
 }
 
@@ -63,6 +64,21 @@ RaceDetector::LastWrite RaceDetector::access(const SharedAccess& access) {
     access_granule(index, granule, cell);
   }
   return last;
+}
+
+bool RaceDetector::was_accessed_by_others(SharedPlace place, TaskId task) const noexcept {
+  const Granule& granule = granules_[place / granule_bytes];
+  if (granule.generation != generation_) return false;
+  for (std::uint32_t number = granule.first; number != none; number = cells_[number].next) {
+    if (cells_[number].task != task) return true;
+  }
+  return false;
+}
+
+void RaceDetector::forget(SharedPlace place, std::size_t bytes) noexcept {
+  // The cells of those granules are free again with the next execution.
+  for (std::size_t i = place / granule_bytes; i * granule_bytes < place + bytes; ++i)
+    granules_[i].generation = generation_ - 1;
 }
 
 void RaceDetector::access_granule(std::size_t index, Granule& granule, Cell access) {

@@ -19,8 +19,10 @@
 
 namespace ltsim {
 
-/// A byte of shared memory: the segment's number above 24 bits of offset.
+/// A byte of shared memory: the segment's number above 24 bits of offset; behind those, of a whole program, see ProgramMemory.
 using SharedPlace = std::uint32_t;
+/// Places in segments are less.
+inline constexpr std::size_t segment_places_count = std::size_t{1} << 27U;
 
 struct SharedAccess {
   TaskId task = 0;
@@ -46,8 +48,6 @@ struct Race {
 
 class RaceDetector {
  public:
-  static constexpr std::size_t places_count = std::size_t{1} << 27U;
-
   /// Who wrote last to the eight bytes around a place.
   struct LastWrite {
     static constexpr TaskId nobody = 0xffff;
@@ -55,7 +55,8 @@ class RaceDetector {
     std::uint32_t site = 0;
   };
 
-  explicit RaceDetector(const HappensBefore& order);
+  /// @param places_count  a multiple of 8: places are less than that
+  RaceDetector(const HappensBefore& order, std::size_t places_count);
   ~RaceDetector();
   RaceDetector(const RaceDetector&) = delete;
   RaceDetector& operator=(const RaceDetector&) = delete;
@@ -63,6 +64,13 @@ class RaceDetector {
 
   /// @return who wrote last before this access, where it begins
   LastWrite access(const SharedAccess& access);
+
+  /// Whether a task other than this one has accessed one of the eight bytes around the place, by a plain access or an atomic one, in
+  /// this execution.
+  [[nodiscard]] bool was_accessed_by_others(SharedPlace place, TaskId task) const noexcept;
+
+  /// What was accessed there is gone, and what is there now is something else.
+  void forget(SharedPlace place, std::size_t bytes) noexcept;
 
   /// The first race of this execution.
   [[nodiscard]] const std::optional<Race>& race() const noexcept { return race_; }
@@ -96,6 +104,7 @@ class RaceDetector {
   [[nodiscard]] std::uint32_t take_cell();
 
   const HappensBefore& order_;
+  std::size_t granules_bytes_;
   Granule* granules_;        // reserved for all places; memory comes with use
   std::vector<Cell> cells_;  // the first is never used
   std::uint32_t cells_count_ = 1;

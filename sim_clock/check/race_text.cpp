@@ -20,11 +20,16 @@ std::string at(std::uint32_t site) {
 
 }  // namespace
 
-std::string describe(const Race& race, ObjectId object, const World& world) {
-  const Operation operation{.kind = race.one.writes ? OperationKind::write : OperationKind::read,
-                            .bytes = race.bytes,
-                            .object = object,
-                            .offset = Segments::offset_in_segment(race.place)};
+std::string describe(const Race& race, const World& world) {
+  Operation operation{.kind = race.one.writes ? OperationKind::write : OperationKind::read, .bytes = race.bytes};
+  if (race.place < segment_places_count) {
+    operation.object = world.segments().segment_at(race.place);
+    operation.offset = Segments::offset_in_segment(race.place);
+  } else {
+    const ProgramMemory::Place place = ProgramMemory::of(race.place);
+    operation.object = place.object;
+    operation.offset = place.offset;
+  }
   return fmt::format("{} {} {} {} while {} {} it {}, and nothing orders the two",
                      world.scheduler().task(race.one.task).name, verb(race.one),
                      world.objects().place(operation), at(race.one.site),

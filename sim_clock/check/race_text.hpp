@@ -4,7 +4,6 @@
 #include <string>
 
 #include "sim_clock/check/race_detector.hpp"
-#include "sim_clock/world/operation.hpp"
 
 namespace ltsim {
 
@@ -12,7 +11,6 @@ class World;
 
 /// "emulator/main writes segment.request[2] at protocol/x.cpp:40 while kernel/main reads it at
 /// protocol/y.cpp:12, and nothing orders the two". The same in every process that runs this program.
-/// @param object  the segment
-[[nodiscard]] std::string describe(const Race& race, ObjectId object, const World& world);
+[[nodiscard]] std::string describe(const Race& race, const World& world);
 
 }  // namespace ltsim

@@ -3,7 +3,6 @@
 #include <dwarf.h>
 #include <elfutils/libdw.h>
 #include <fcntl.h>
-#include <link.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -14,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "sim_clock/check/code_site.hpp"
+#include "sim_clock/world/program_image.hpp"
 #include "sim_clock/world/task.hpp"
 
 namespace ltsim {
@@ -34,17 +33,11 @@ class DebugInformation {
  public:
   DebugInformation() : file_(open("/proc/self/exe", O_RDONLY | O_CLOEXEC)) {
     if (file_ >= 0) dwarf_ = dwarf_begin(file_, DWARF_C_READ);
-    dl_iterate_phdr(
-        [](dl_phdr_info* program, std::size_t /*size*/, void* into) {
-          *static_cast<std::uintptr_t*>(into) = program->dlpi_addr;
-          return 1;  // the program comes first
-        },
-        &loaded_at_);
   }
 
   [[nodiscard]] std::string location(std::uint32_t site) const {
     // A return address: the call stands before it.
-    const Dwarf_Addr address = reinterpret_cast<std::uintptr_t>(&__executable_start) + site - loaded_at_ - 1;
+    const Dwarf_Addr address = ProgramImage::linked_address_of(site) - 1;
     Dwarf_Die unit;
     if (dwarf_ == nullptr || !find_unit(address, unit)) return {};
     const Line line = innermost_line_under_test(unit, address);
@@ -118,7 +111,6 @@ class DebugInformation {
 
   int file_;
   Dwarf* dwarf_ = nullptr;
-  std::uintptr_t loaded_at_ = 0;
 };
 
 }  // namespace

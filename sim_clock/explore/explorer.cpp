@@ -173,9 +173,11 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                               .memory = world_.memory(),
                               .cpu = world_.scheduler().cpu(),
                               .input = world_.input_records(),
+                              .program = scenario.program,
                               .deviations = recording.deviations()},
                  .choices_count = recording.deviations().size(),
                  .story = {},
+                 .output = world_.output(),
                  .messages = {outcome.message}};
 }
 
@@ -196,6 +198,7 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
   Story story{world_, failure.schedule};
   static_cast<void>(replay(scenario, failure.schedule, &story));
   failure.story = story.text(failure.outcome);
+  failure.output = world_.output();
 }
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {

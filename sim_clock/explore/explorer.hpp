@@ -45,6 +45,7 @@ struct Failure {
   std::size_t choices_count = 0;      ///< that differed from the default in the execution itself
   bool one_minimal = false;           ///< without any one line of the schedule the failure is gone
   std::string story;                  ///< of `schedule`, for a screen; empty where it was not made small
+  std::string output;                 ///< what the code under test has written meanwhile
   std::vector<std::string> messages;  ///< of all executions that count as this failure
   bool has_schedule = true;           ///< false: the process died, and the choices with it
 };

@@ -185,6 +185,8 @@ std::string to_string(const Schedule& schedule) {
       fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", schedule_header, schedule.scenario,
                   to_string(schedule.memory), schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
                   to_string(schedule.outcome), message.empty() ? "" : ": ", message);
+  for (std::size_t i = 0; i < schedule.program.size(); ++i)
+    text += fmt::format("{}{}\n", i == 0 ? "program   " : "argument  ", quoted(schedule.program[i]));
   for (const std::string& line : input_lines(schedule)) text += line + "\n";
   for (const Deviation& deviation : schedule.deviations) text += to_string(deviation) + "\n";
   return text;
@@ -228,6 +230,12 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       if (!kind) return error(fmt::format("no outcome is called \"{}\"", rest.substr(0, colon)));
       schedule.outcome = *kind;
       schedule.message = one_line(std::string{rest.substr(std::min(colon + 1, rest.size()))});
+    } else if (words.front() == "program" || words.front() == "argument") {
+      if ((words.front() == "program") != schedule.program.empty())
+        return error("one program line, and the argument lines after it");
+      auto word = parse_quoted(rest_after_first_word(line));
+      if (!word) return error(std::move(word.error()));
+      schedule.program.push_back(std::move(*word));
     } else if (words.front() == "input") {
       auto record = parse_quoted(rest_after_first_word(line));
       if (!record) return error(std::move(record.error()));
@@ -241,7 +249,7 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       schedule.deviations.push_back(std::move(*deviation));
     } else {
       return error(fmt::format(
-          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, input, switch, "
+          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, program, argument, input, switch, "
           "time, stall, fault, crash, choose, older",
           words.front()));
     }

@@ -16,6 +16,10 @@
 // A scenario that reads an input, as a fuzz target does, has that in its schedule as well, a record a line:
 //   input     "\x02010F604\x0374"
 //
+// One of a whole program says which, and with which arguments:
+//   program   "./bank"
+//   argument  "100"
+//
 // The default: the running task goes on until it blocks, then the task with the lowest number that can run; a
 // task that yields lets the next one run; time passes only when nobody can run; the scenario's questions are
 // answered with 0; no fault strikes; loads see the latest store. A "time" line lets time pass for everybody before the step, a "stall" line holds up the
@@ -79,6 +83,8 @@ struct Schedule {
   Memory memory = Memory::sc;
   Cpu cpu = Cpu::many;
   std::vector<std::string> input = {};  ///< records of World::input(); together they are it
+  /// Of a whole program: its path and its arguments; otherwise empty.
+  std::vector<std::string> program = {};
   std::vector<Deviation> deviations;
 };
 

@@ -34,6 +34,7 @@ json to_json(const WorkerFoundFailure& found) {
           {"choices", failure.choices_count},
           {"one minimal", failure.one_minimal},
           {"story", as_bytes(failure.story)},
+          {"output", as_bytes(failure.output)},
           {"messages", std::move(messages)}};
 }
 
@@ -57,6 +58,7 @@ WorkerFoundFailure found_failure_of(const json& object) {
   failure.choices_count = object.at("choices").get<std::size_t>();
   failure.one_minimal = object.at("one minimal").get<bool>();
   failure.story = text_of(object.at("story"));
+  failure.output = text_of(object.at("output"));
   for (const json& message : object.at("messages")) failure.messages.push_back(text_of(message));
   return {.place = object.at("place").get<std::size_t>(), .failure = std::move(failure)};
 }

@@ -35,6 +35,12 @@ const Scenario& scenario_of_name(const std::string& name) {
   return *scenario;
 }
 
+const Scenario& scenario_of(const Schedule& schedule) {
+  if (!schedule.program.empty() && find_scenario(schedule.scenario) == nullptr)
+    throw ProgramIsNeeded{schedule.program};
+  return scenario_of_name(schedule.scenario);
+}
+
 Schedule read_schedule(const std::string& path) {
   std::ifstream file{path, std::ios::binary};
   if (!file) throw UsageError{fmt::format("{}: cannot be read", path)};

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <tl/expected.hpp>
@@ -51,6 +52,13 @@ void add_memory_option(CLI::App& command, Memory& memory);
 
 /// @throw UsageError if there is none of that name
 [[nodiscard]] const Scenario& scenario_of_name(const std::string& name);
+
+/// The command is for this program's own process.
+struct ProgramIsNeeded {
+  std::vector<std::string> program;  ///< its path and its arguments
+};
+/// @throw UsageError if there is no such scenario; ProgramIsNeeded if it is a whole program and not this one
+[[nodiscard]] const Scenario& scenario_of(const Schedule& schedule);
 
 /// @throw UsageError if the file cannot be read or is no schedule
 [[nodiscard]] Schedule read_schedule(const std::string& path);

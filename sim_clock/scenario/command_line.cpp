@@ -1,14 +1,32 @@
 #include "sim_clock/scenario/command_line.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "sim_clock/explore/explorer.hpp"
+#include "sim_clock/program/launch.hpp"
 #include "sim_clock/scenario/command.hpp"
 
 namespace ltsim {
+namespace {
+
+/// "ltsim explore ... -- ./program ...": goes on in the program's process.
+void launch_what_follows(const std::vector<std::string>& words) {
+  const auto separator = std::find(words.begin(), words.end(), "--");
+  if (separator == words.end()) return;
+  if (separator + 1 == words.end()) throw UsageError{"no program follows \"--\""};
+  std::vector<std::string> command{words.begin(), separator};
+  const std::vector<std::string> program{separator + 1, words.end()};
+  command.push_back(scenario_name_of(program.front()));
+  throw UsageError{launch_program(command, program)};  // it has come back: that could not be
+}
+
+}  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
   CLI::App app{
@@ -24,9 +42,15 @@ int run_command_line(int argc, const char* const* argv) {
   add_minimize_command(app, chosen);
   add_zoo_command(app, chosen);
   add_fuzz_command(app, chosen);
+  const std::vector<std::string> words{argv, argv + argc};
   try {
+    launch_what_follows(words);
     app.parse(argc, argv);
-    return chosen(argv[0]);
+    try {
+      return chosen(argv[0]);
+    } catch (const ProgramIsNeeded& needed) {
+      throw UsageError{launch_program(words, needed.program)};
+    }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_nothing_found : exit_bad_usage;
   } catch (const UsageError& error) {

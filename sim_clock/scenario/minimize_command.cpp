@@ -23,7 +23,7 @@ std::size_t lines_count(const Schedule& schedule) {
 
 int minimize(const MinimizeArguments& arguments, std::string_view program) {
   const Schedule schedule = read_schedule(arguments.file);
-  const Scenario& scenario = scenario_of_name(schedule.scenario);
+  const Scenario& scenario = scenario_of(schedule);
   World world;
   const MinimizeReport report = Minimizer{world, scenario}.minimize(
       schedule, {.seconds_max = std::chrono::duration<double>{arguments.seconds}});

@@ -23,7 +23,7 @@ struct ReplayArguments {
 
 int replay(const ReplayArguments& arguments) {
   const Schedule schedule = read_schedule(arguments.file);
-  const Scenario& scenario = scenario_of_name(schedule.scenario);
+  const Scenario& scenario = scenario_of(schedule);
   World world;
   Explorer explorer{world};
   TextTrace trace{world};

@@ -16,15 +16,16 @@ std::vector<Scenario>& registry() {
   return all;
 }
 
-void add(std::string_view name, std::string_view description, std::function<void(World&)> body) {
+void add(Scenario scenario) {
   auto& all = registry();
-  const auto place = std::lower_bound(all.begin(), all.end(), name,
+  const auto place = std::lower_bound(all.begin(), all.end(), scenario.name,
                                       [](const Scenario& s, std::string_view n) { return s.name < n; });
-  if (place != all.end() && place->name == name) {
-    std::fprintf(stderr, "two scenarios are called %.*s\n", static_cast<int>(name.size()), name.data());
+  if (place != all.end() && place->name == scenario.name) {
+    std::fprintf(stderr, "two scenarios are called %.*s\n", static_cast<int>(scenario.name.size()),
+                 scenario.name.data());
     std::exit(2);
   }
-  all.insert(place, Scenario{.name = name, .description = description, .body = std::move(body)});
+  all.insert(place, std::move(scenario));
 }
 
 /// One task of one process that reads the input.
@@ -45,8 +46,9 @@ std::vector<Scenario>& complete_registry() {
   if (names.empty()) {
     for (const FuzzTarget& target : fuzz_targets()) {
       if (target.needs_world()) continue;  // registered as what it is
-      add(names.emplace_back("fuzz/" + std::string{target.name}), target.description,
-          [&target](World& world) { run_target(world, target); });
+      add({.name = names.emplace_back("fuzz/" + std::string{target.name}),
+           .description = target.description,
+           .body = [&target](World& world) { run_target(world, target); }});
     }
   }
   return registry();
@@ -64,7 +66,9 @@ const Scenario* find_scenario(std::string_view name) {
 
 ScenarioRegistration::ScenarioRegistration(std::string_view name, std::string_view description,
                                            std::function<void(World&)> body) {
-  add(name, description, std::move(body));
+  add({.name = name, .description = description, .body = std::move(body)});
 }
+
+void add_program_scenario(Scenario scenario) { add(std::move(scenario)); }
 
 }  // namespace ltsim

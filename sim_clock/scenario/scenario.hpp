@@ -23,6 +23,7 @@ struct Scenario {
   std::string_view name;  ///< "group/what", without blanks
   std::string_view description;
   std::function<void(World& world)> body;
+  std::vector<std::string> program = {};  ///< of a whole program: its path and its arguments
 };
 
 /// All scenarios of this program, by name; with "fuzz/NAME" for each FUZZ_TARGET(), whose bytes are World::input().
@@ -35,6 +36,10 @@ struct ScenarioRegistration {
   /// @param name, description  outlive the program's scenarios
   ScenarioRegistration(std::string_view name, std::string_view description, std::function<void(World&)> body);
 };
+
+/// Adds a whole program as a scenario.
+/// @param scenario  its name and description outlive the program's scenarios
+void add_program_scenario(Scenario scenario);
 
 }  // namespace ltsim
 

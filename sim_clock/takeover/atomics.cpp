@@ -27,7 +27,8 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind, 
   if (Segments::contains(address)) {
     ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller),
                          ltsim::is_seq_cst(order));
-  } else {
+  } else if (!ltsim::access_program(*self->world, address, bytes, kind, ltsim::code_site(caller),
+                                    ltsim::is_seq_cst(order))) {
     self->world->scheduler().point(
         {.kind = kind,
          .bytes = static_cast<std::uint8_t>(bytes),
@@ -38,10 +39,10 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind, 
   return true;
 }
 
-ltsim::SharedAccess shared_access(const ltsim::Task& self, const volatile void* address, std::size_t bytes,
+ltsim::SharedAccess shared_access(const ltsim::Task& self, ltsim::SharedPlace place, std::size_t bytes,
                                   AtomicAccess access, const void* caller) noexcept {
   return {.task = self.id,
-          .place = Segments::place_of(address),
+          .place = place,
           .bytes = static_cast<std::uint8_t>(bytes),
           .writes = writes(access),
           .plain = false,
@@ -53,8 +54,9 @@ void performed(const volatile void* address, std::size_t bytes, AtomicAccess acc
                const void* caller) noexcept {
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr || !self->world->checks().on()) return;
-  self->world->checks().atomic(shared_access(*self, address, bytes, access, caller),
-                               Segments::canonical(address), Segments::contains(address), access, order);
+  const auto place = ltsim::shared_place(address);
+  self->world->checks().atomic(shared_access(*self, place.value_or(0), bytes, access, caller),
+                               Segments::canonical(address), place.has_value(), access, order);
 }
 
 /// Whether this is an operation of a simulated task whose memory is weak.
@@ -67,8 +69,9 @@ WeakMemory::Result perform_weakly(const WeakMemory::Access& access, const void* 
   const WeakMemory::Result result = world.weak_memory().access(access);
   const AtomicAccess done =
       access.kind == AtomicAccess::update && !result.stored ? AtomicAccess::load : access.kind;
-  if (world.checks().on() && Segments::contains(access.address)) {
-    world.checks().accessed(shared_access(*ltsim::current_task, access.address, access.bytes, done, caller),
+  const auto place = ltsim::shared_place(access.address);
+  if (world.checks().on() && place) {
+    world.checks().accessed(shared_access(*ltsim::current_task, *place, access.bytes, done, caller),
                             reads(done));
   }
   return result;

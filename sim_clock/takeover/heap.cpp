@@ -1,10 +1,11 @@
-// malloc(3) and its kind, for the whole program: who looks at the whole state of a world must know each block (world/heap.hpp).
-// Nothing else is changed: the memory is libc's.
+// malloc(3) and its kind. What the code of a whole program asks for lies in its own heap (world/program_heap.hpp). Otherwise the memory
+// is libc's, and whoever looks at the whole state of a world is told of each block (world/heap.hpp).
 
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
 
+#include "sim_clock/takeover/program_blocks.hpp"
 #include "sim_clock/world/heap.hpp"
 #include "sim_clock/world/wipe_stack.hpp"
 
@@ -18,6 +19,7 @@ extern "C" void __libc_free(void* block);
 namespace {
 
 using ltsim::Heap;
+using ltsim::ProgramHeap;
 
 /// While something is listed: with what is allocated meanwhile, entered or not, a freed block may be gone.
 [[gnu::noinline]] void* entered(void* block, std::size_t bytes) noexcept {
@@ -47,7 +49,8 @@ using ltsim::Heap;
   return other;
 }
 
-void* allocate_aligned(std::size_t alignment, std::size_t bytes) noexcept {
+void* allocate_aligned(std::size_t alignment, std::size_t bytes, const void* caller) noexcept {
+  if (ProgramHeap::serves(caller)) return ltsim::allocate_for_program(bytes, alignment, caller);
   void* const block = __libc_memalign(alignment, bytes);
   return Heap::is_listing() ? entered(block, bytes) : block;
 }
@@ -55,17 +58,33 @@ void* allocate_aligned(std::size_t alignment, std::size_t bytes) noexcept {
 }  // namespace
 
 extern "C" void* malloc(std::size_t bytes) {
+  if (const void* const caller = __builtin_return_address(0); ProgramHeap::serves(caller)) [[unlikely]]
+    return ltsim::allocate_for_program(bytes, ProgramHeap::granule_bytes, caller);
   if (Heap::is_listing()) [[unlikely]]
     return entered(__libc_malloc(bytes), bytes);
   return __libc_malloc(bytes);
 }
 
 extern "C" void* calloc(std::size_t count, std::size_t bytes) {
+  if (const void* const caller = __builtin_return_address(0); ProgramHeap::serves(caller)) [[unlikely]] {
+    std::size_t all = 0;
+    if (__builtin_mul_overflow(count, bytes, &all)) {
+      errno = ENOMEM;
+      return nullptr;
+    }
+    void* const block = ltsim::allocate_for_program(all, ProgramHeap::granule_bytes, caller);
+    return block == nullptr ? nullptr : std::memset(block, 0, all);
+  }
   void* const block = __libc_calloc(count, bytes);
   return Heap::is_listing() ? entered(block, count * bytes) : block;
 }
 
 extern "C" void* realloc(void* block, std::size_t bytes) {
+  const void* const caller = __builtin_return_address(0);
+  if (block == nullptr && ProgramHeap::serves(caller)) [[unlikely]]
+    return ltsim::allocate_for_program(bytes, ProgramHeap::granule_bytes, caller);
+  if (ProgramHeap::contains(block)) [[unlikely]]
+    return ltsim::reallocate_for_program(block, bytes, caller);
   if (Heap::is_listing() && block == nullptr) [[unlikely]]
     return entered(__libc_malloc(bytes), bytes);
   if (Heap::is_listing() && Heap::bytes_of(block) != 0) [[unlikely]] {
@@ -79,22 +98,26 @@ extern "C" void* realloc(void* block, std::size_t bytes) {
 }
 
 extern "C" void free(void* block) {
+  if (ProgramHeap::contains(block)) [[unlikely]] {
+    ltsim::free_of_program(block, __builtin_return_address(0));
+    return;
+  }
   if (Heap::is_listing()) [[unlikely]]
     left(block);
   __libc_free(block);
 }
 
 extern "C" void* aligned_alloc(std::size_t alignment, std::size_t bytes) {
-  return allocate_aligned(alignment, bytes);
+  return allocate_aligned(alignment, bytes, __builtin_return_address(0));
 }
 
 extern "C" void* memalign(std::size_t alignment, std::size_t bytes) {
-  return allocate_aligned(alignment, bytes);
+  return allocate_aligned(alignment, bytes, __builtin_return_address(0));
 }
 
 extern "C" int posix_memalign(void** into, std::size_t alignment, std::size_t bytes) {
   if (alignment % sizeof(void*) != 0 || (alignment & (alignment - 1)) != 0 || alignment == 0) return EINVAL;
-  void* const block = allocate_aligned(alignment, bytes);
+  void* const block = allocate_aligned(alignment, bytes, __builtin_return_address(0));
   if (block == nullptr) return ENOMEM;
   *into = block;
   return 0;

@@ -1,5 +1,5 @@
-// Plain and volatile loads and stores, as the compiler announces them with -fsanitize=thread. An access to a
-// shared segment by a simulated task is a scheduling point; every other one returns at once.
+// Plain and volatile loads and stores, as the compiler announces them with -fsanitize=thread. An access to shared
+// memory by a simulated task is a scheduling point; every other one returns at once.
 //
 // The names and signatures are the interface between the compilers and the sanitizer's runtime: GCC,
 // gcc/sanitizer.def; LLVM, lib/Transforms/Instrumentation/ThreadSanitizer.cpp. The program is not linked with
@@ -24,15 +24,16 @@ using ltsim::Segments;
   if (self == nullptr) return;
   if (Segments::contains(address)) {
     ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
-  } else {
-    // Where an atomic object was, or is being made.
-    self->world->weak_memory().written_plainly(address, bytes);
+    return;
   }
+  ltsim::access_program(*self->world, address, bytes, kind, ltsim::code_site(caller));
+  // Where an atomic object was, or is being made.
+  if (kind == OperationKind::write) self->world->weak_memory().written_plainly(address, bytes);
 }
 
-/// Whether an access there concerns the world: it lies in a segment, or is a write that somebody must know of.
+/// Whether an access there concerns the world: it lies in shared memory, or is a write that somebody must know of.
 inline bool is_watched(const volatile void* address, OperationKind kind) noexcept {
-  return kind == OperationKind::read ? Segments::contains(address) : ltsim::is_watched_write(address);
+  return kind == OperationKind::read ? ltsim::is_watched_read(address) : ltsim::is_watched_write(address);
 }
 
 /// @param caller  the return address of the announcement: it stands in the code under test

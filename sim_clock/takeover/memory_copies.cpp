@@ -1,6 +1,6 @@
-// memcpy and its kind. A copy from or to a shared segment is TEARABLE: it is made in pieces of eight bytes
-// with a scheduling point before each read and each write of a piece, for that is how another processor may
-// see it.
+// memcpy and its kind. A copy from or to shared memory is TEARABLE: it is made in pieces of eight bytes with a
+// scheduling point before each read and each write of a piece, for that is how another processor may see it. In
+// a whole program that is so for what its own code copies.
 
 #include <dlfcn.h>
 
@@ -44,8 +44,11 @@ constinit NextFunction<void*(void*, int, std::size_t)> next_memset{"memset"};
 constexpr std::size_t piece_bytes = 8;
 
 void point(const volatile void* address, std::size_t bytes, OperationKind kind, std::uint32_t site) noexcept {
-  if (Segments::contains(address))
+  if (Segments::contains(address)) {
     ltsim::access_shared(*ltsim::current_task->world, address, bytes, kind, site);
+  } else {
+    ltsim::access_program(*ltsim::current_task->world, address, bytes, kind, site);
+  }
 }
 
 /// The bytes are moved by instructions, not by a call that would lead back here.
@@ -78,14 +81,19 @@ void* copy_in_pieces(void* to, const void* from, std::size_t bytes, std::uint32_
   return to;
 }
 
-bool is_shared_copy(const void* a, const void* b) noexcept {
-  return (Segments::contains(a) || Segments::contains(b)) && ltsim::current_task != nullptr;
+bool is_shared(const void* address, std::uint32_t site) noexcept {
+  return Segments::contains(address) || (site != 0 && ltsim::ProgramMemory::is_on() && ltsim::ProgramMemory::find(address));
+}
+
+bool is_shared_copy(const void* a, const void* b, std::uint32_t site) noexcept {
+  return ltsim::current_task != nullptr && (is_shared(a, site) || is_shared(b, site));
 }
 
 template <typename Next>
 void* copy(Next& next, void* to, const void* from, std::size_t bytes, const void* caller) noexcept {
-  if (is_shared_copy(to, from)) [[unlikely]]
-    return copy_in_pieces(to, from, bytes, ltsim::code_site(caller));
+  const std::uint32_t site = ltsim::code_site(caller);
+  if (is_shared_copy(to, from, site)) [[unlikely]]
+    return copy_in_pieces(to, from, bytes, site);
   auto* const function = next.get();
   if (function != nullptr) [[likely]]
     return function(to, from, bytes);
@@ -94,10 +102,11 @@ void* copy(Next& next, void* to, const void* from, std::size_t bytes, const void
 }
 
 void* fill(void* to, int value, std::size_t bytes, const void* caller) noexcept {
-  if (Segments::contains(to) && ltsim::current_task != nullptr) [[unlikely]] {
+  const std::uint32_t site = ltsim::code_site(caller);
+  if (ltsim::current_task != nullptr && is_shared(to, site)) [[unlikely]] {
     for (std::size_t done = 0; done < bytes; done += piece_bytes) {
       const std::size_t piece = std::min(piece_bytes, bytes - done);
-      point(static_cast<std::byte*>(to) + done, piece, OperationKind::write, ltsim::code_site(caller));
+      point(static_cast<std::byte*>(to) + done, piece, OperationKind::write, site);
       fill_bytes(static_cast<std::byte*>(to) + done, value, piece);
     }
     return to;

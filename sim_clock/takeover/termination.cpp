@@ -61,12 +61,14 @@ extern "C" void __assert_fail(const char* expression, const char* file, unsigned
   __builtin_unreachable();
 }
 
-// exit(3) and its kind would end the simulator and every result with it. The second argument is the exception
-// specification of libc's declaration.
+// exit(3) and its kind would end the simulator and every result with it, unless the world knows what they come to. The second
+// argument is the exception specification of libc's declaration.
 #define LTSIM_EXIT(name, specification)                                                            \
   extern "C" void name(int status) specification {                                                 \
     if (current_task == nullptr) {                                                                 \
       LTSIM_NEXT(name)(status);                                                                    \
+    } else if (const auto& exit = current_task->world->exit(); exit) {                             \
+      exit(status, __builtin_frame_address(0));                                                    \
     } else {                                                                                       \
       fail(ltsim::OutcomeKind::unsupported, #name "() was called, which would end the simulator"); \
     }                                                                                              \

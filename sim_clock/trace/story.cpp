@@ -87,7 +87,7 @@ void Story::performs(const Task& task, const Operation& operation) noexcept {
   Event event{.task = task.id, .at = world_.now(), .operation = operation};
   if (is_memory_access(operation.kind)) {
     const std::uint64_t begin = std::uint64_t{operation.object} << 32U | operation.offset;
-    if (operation.object != 0) event.before = event.after = world_.segments().value_at(operation);
+    if (operation.object != 0) event.before = event.after = world_.value_at(operation);
     const auto last = last_write_.find(begin);
     if (last != last_write_.end() && !(changes_memory(operation.kind) && !is_update(operation.kind))) {
       event.writer = events_[last->second].task;
@@ -167,7 +167,7 @@ void Story::finish_write() noexcept {
   if (!write_is_unfinished_) return;
   write_is_unfinished_ = false;
   Event& event = events_[unfinished_write_];
-  if (event.operation.object != 0) event.after = world_.segments().value_at(event.operation);
+  if (event.operation.object != 0) event.after = world_.value_at(event.operation);
 }
 
 std::string Story::field(const Operation& operation) const {

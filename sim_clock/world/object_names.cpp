@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/world/program_memory.hpp"
 #include "sim_clock/world/same_name.hpp"
 
 namespace ltsim {
@@ -46,12 +47,14 @@ void ObjectNames::name_region(std::string_view object_name, std::uint32_t offset
 
 std::string ObjectNames::name(const Operation& operation) const {
   if (operation.object == 0) return is_memory_access(operation.kind) ? "memory" : "-";
+  if (ProgramMemory::is_object(operation.object)) return program_memory_.name(operation);
   const Region* const region = region_of(operation);
   return region != nullptr ? region->name : std::string{object_name(operation.object)};
 }
 
 std::string ObjectNames::place(const Operation& operation) const {
   if (!is_memory_access(operation.kind) || operation.object == 0) return name(operation);
+  if (ProgramMemory::is_object(operation.object)) return program_memory_.place(operation);
   const Region* const region = region_of(operation);
   if (region == nullptr) return fmt::format("{}[{}]", object_name(operation.object), operation.offset);
   if (region->bytes <= operation.bytes) return region->name;

@@ -18,8 +18,12 @@ namespace ltsim {
 /// Makes of a name what schedules can hold: one word. Blanks become '_', nothing becomes "_".
 void make_one_word(std::string& name);
 
+class ProgramMemory;
+
 class ObjectNames {
  public:
+  /// @param program_memory  names its own objects; outlives this
+  explicit ObjectNames(const ProgramMemory& program_memory) noexcept : program_memory_(program_memory) {}
   void reset() noexcept;
 
   /// @param name  a leading '/' (POSIX names) is left out, blanks become '_': a name is one word of a
@@ -48,6 +52,7 @@ class ObjectNames {
 
   [[nodiscard]] const Region* region_of(const Operation& operation) const noexcept;
 
+  const ProgramMemory& program_memory_;
   std::vector<std::string> names_;  // pooled; index = ObjectId - 1
   std::size_t names_count_ = 0;
   std::vector<Region> regions_;

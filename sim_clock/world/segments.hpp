@@ -42,6 +42,7 @@ class Segments {
   static constexpr std::uintptr_t range_begin = std::uintptr_t{1} << 40U;
   static constexpr std::size_t range_bytes = windows_count << window_shift;
   static constexpr int first_descriptor = 1 << 24;
+  static_assert(segments_max << window_shift == segment_places_count);
 
   [[nodiscard]] static bool contains(const volatile void* address) noexcept {
     return reinterpret_cast<std::uintptr_t>(address) - range_begin < range_bytes;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -93,15 +94,29 @@ constexpr std::size_t self_thread = 16;
 constexpr std::size_t stack_guard = 40;
 constexpr std::size_t pointer_guard = 48;
 
+/// Which slots hold a stack.
+std::array<bool, TaskStorage::slots_count> slots_taken{};
+
+constexpr std::size_t slot_bytes = std::size_t{1} << TaskStorage::slot_shift;
+
+void* take_slot() {
+  static const void* const range =
+      mmap(reinterpret_cast<void*>(TaskStorage::range_begin), TaskStorage::range_bytes, PROT_NONE,
+           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED_NOREPLACE, -1, 0);
+  LTSIM_CHECK(range == reinterpret_cast<void*>(TaskStorage::range_begin));
+  const auto slot = std::find(slots_taken.begin(), slots_taken.end(), false);
+  LTSIM_CHECK(slot != slots_taken.end());
+  *slot = true;
+  return reinterpret_cast<void*>(TaskStorage::range_begin +
+                                 static_cast<std::size_t>(slot - slots_taken.begin()) * slot_bytes);
+}
+
 }  // namespace
 
 TaskStorage::TaskStorage() {
-  stack_base_ = mmap(nullptr, guard_bytes + stack_bytes, PROT_NONE,
-                     MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_NORESERVE, -1, 0);
-  LTSIM_CHECK(stack_base_ != MAP_FAILED);
-  LTSIM_CHECK(mprotect(static_cast<char*>(stack_base_) + guard_bytes, stack_bytes, PROT_READ | PROT_WRITE) ==
-              0);
-  stack_top_ = static_cast<char*>(stack_base_) + guard_bytes + stack_bytes;
+  stack_base_ = take_slot();
+  stack_top_ = static_cast<char*>(stack_base_) + slot_bytes;
+  LTSIM_CHECK(mprotect(static_cast<char*>(stack_top_) - stack_bytes, stack_bytes, PROT_READ | PROT_WRITE) == 0);
 
   thread_pointer_ = _dl_allocate_tls(nullptr);
   LTSIM_CHECK(thread_pointer_ != nullptr);
@@ -117,8 +132,10 @@ TaskStorage::TaskStorage() {
 TaskStorage::~TaskStorage() {
   std::erase(thread_pointers_of_tasks(), thread_pointer_);
   _dl_deallocate_tls(thread_pointer_, true);
-  munmap(stack_base_,
-         static_cast<std::size_t>(static_cast<char*>(stack_top_) - static_cast<char*>(stack_base_)));
+  // The slot stays reserved for the next one; what was on the stack is let go.
+  LTSIM_CHECK(mmap(stack_base_, slot_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1,
+                   0) == stack_base_);
+  slots_taken[slot()] = false;
 }
 
 void TaskStorage::reset() noexcept {
@@ -129,6 +146,15 @@ void TaskStorage::reset() noexcept {
   for (const auto& [from_thread_pointer, initial_value] : all.bytes)
     std::memcpy(base + from_thread_pointer, &initial_value, sizeof initial_value);
   std::memset(base + errno_from_thread_pointer(), 0, sizeof errno);
+}
+
+const std::vector<std::ptrdiff_t>& TaskStorage::thread_local_words() {
+  static const std::vector<std::ptrdiff_t> all = [] {
+    std::vector<std::ptrdiff_t> places;
+    for (const auto& local : thread_locals_to_reset().words) places.push_back(local.from_thread_pointer);
+    return places;
+  }();
+  return all;
 }
 
 void TaskStorage::add_state(StateHash& hash) const noexcept {
@@ -144,7 +170,7 @@ void TaskStorage::clean_stack_below(void* stack_pointer, std::size_t bytes_max) 
   constexpr std::size_t red_zone_bytes =
       128;  // System V ABI for x86-64, 3.2.2: in use, below the stack pointer
   char* const end = static_cast<char*>(stack_pointer) - red_zone_bytes;
-  char* const lowest = static_cast<char*>(stack_base_) + guard_bytes;
+  char* const lowest = static_cast<char*>(stack_top_) - stack_bytes;
   char* const begin = end - lowest > static_cast<std::ptrdiff_t>(bytes_max) ? end - bytes_max : lowest;
   if (begin < end) std::memset(begin, 0, static_cast<std::size_t>(end - begin));
 }

@@ -27,7 +27,7 @@
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/seq_cst_order.hpp"
 #include "sim_clock/world/task.hpp"
-#include "sim_clock/world/watched_writes.hpp"
+#include "sim_clock/world/watched_accesses.hpp"
 
 namespace ltsim {
 

@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <span>
 
-#include "sim_clock/world/watched_writes.hpp"
+#include "sim_clock/world/watched_accesses.hpp"
 #include "sim_clock/world/wipe_stack.hpp"
 #include "sim_clock/world/world.hpp"
 

@@ -103,11 +103,16 @@ void World::end_execution() noexcept {
   in_execution = nullptr;
   if (failed() || scheduler_.is_abandoned()) return;
   if (const auto race = checks_.race()) {
-    scheduler_.fail(OutcomeKind::data_race, describe(*race, segments_.segment_at(race->place), *this));
+    scheduler_.fail(OutcomeKind::data_race, describe(*race, *this));
     return;
   }
   std::string held = mutexes_.held_at_end();
   if (!held.empty()) scheduler_.fail(OutcomeKind::leak, std::move(held));
+}
+
+std::uint64_t World::value_at(const Operation& operation) const noexcept {
+  return ProgramMemory::is_object(operation.object) ? ProgramMemory::value_at(operation)
+                                                    : segments_.value_at(operation);
 }
 
 bool World::refuses_real(std::string_view call) {
@@ -163,6 +168,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   execution_number_ = ++last_execution_number_;
   random_draws_count_ = 0;
   wall_clock_ahead_ = wall_clock_epoch;
+  exit_ = nullptr;
+  output_.clear();
   in_execution = this;
   scheduler_.reset(strategy, listener);
   scheduler_.set_cpu(default_cpu_);

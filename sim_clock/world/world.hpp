@@ -34,6 +34,7 @@
 #include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
+#include "sim_clock/world/program_memory.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/semaphores.hpp"
@@ -227,6 +228,13 @@ class World {
 
   [[nodiscard]] SimTime now() const noexcept { return scheduler_.clock().now(); }
 
+  /// What exit(3) comes to in a task; without it exit(3) is refused. Must end the execution.
+  /// @param exit  gets the status and where the stack of the caller begins
+  void set_exit(std::function<void(int, const void*)> exit) { exit_ = std::move(exit); }
+  /// What the code under test has written on its standard output and for errors: shown with a failure.
+  void set_output(std::string text) { output_ = std::move(text); }
+  [[nodiscard]] const std::string& output() const noexcept { return output_; }
+
   /// A remark for the trace. `text()` is only called when somebody reads it.
   template <typename Text>
   void note(Text&& text) {
@@ -273,6 +281,11 @@ class World {
   [[nodiscard]] ObjectNames& objects() noexcept { return objects_; }
   [[nodiscard]] const ObjectNames& objects() const noexcept { return objects_; }
   [[nodiscard]] Segments& segments() noexcept { return segments_; }
+  [[nodiscard]] const Segments& segments() const noexcept { return segments_; }
+  [[nodiscard]] ProgramMemory& program_memory() noexcept { return program_memory_; }
+  /// What memory holds now where `operation` acts, which has an object, as an unsigned number; of longer accesses the first
+  /// eight bytes.
+  [[nodiscard]] std::uint64_t value_at(const Operation& operation) const noexcept;
   [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
   [[nodiscard]] WeakMemory& weak_memory() noexcept { return weak_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
@@ -310,6 +323,8 @@ class World {
   }
   [[nodiscard]] unsigned incarnation(ProcessId id) const noexcept { return processes_[id]->incarnation(); }
 
+  [[nodiscard]] const std::function<void(int, const void*)>& exit() const noexcept { return exit_; }
+
   /// The code under test called something that this world does not simulate. Ends the execution.
   void unsupported(std::string what);
 
@@ -341,9 +356,11 @@ class World {
   static inline std::uint64_t last_execution_number_ = execution_number_mark << execution_number_bits;
 
   Scheduler scheduler_{*this};
-  ObjectNames objects_;
+  ProgramMemory program_memory_{*this};
+  ObjectNames objects_{program_memory_};
   Segments segments_{*this};
-  MemoryChecks checks_{segments_.memory()};
+  MemoryChecks checks_{segments_.memory(),
+                       ProgramMemory::is_on() ? ProgramMemory::places_end : segment_places_count};
   WeakMemory weak_{*this};
   Semaphores semaphores_{*this};
   Mutexes mutexes_{*this};
@@ -360,6 +377,8 @@ class World {
   Memory default_memory_ = Memory::sc;
   std::vector<std::string> input_records_;
   std::string input_;
+  std::function<void(int, const void*)> exit_;
+  std::string output_;
   std::uint64_t execution_number_ = 0;
   std::uint64_t random_draws_count_ = 0;
   SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock

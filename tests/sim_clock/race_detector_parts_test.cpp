@@ -41,7 +41,7 @@ class Oracle {
 
 TEST(RaceDetector, finds_the_first_race_exactly_where_nothing_forgotten_would_find_it) {
   HappensBefore order;
-  RaceDetector detector{order};
+  RaceDetector detector{order, std::size_t{1} << 20U};
   std::size_t with_race = 0;
   for (std::uint64_t seed = 1; seed <= 2'000; ++seed) {
     order.reset();
@@ -80,7 +80,7 @@ TEST(RaceDetector, finds_the_first_race_exactly_where_nothing_forgotten_would_fi
 TEST(RaceDetector, tells_who_wrote_last) {
   HappensBefore order;
   order.reset();
-  RaceDetector detector{order};
+  RaceDetector detector{order, std::size_t{1} << 20U};
   detector.reset();
   for (TaskId task = 0; task < 2; ++task) order.begins(task);
   const auto access = [&](TaskId task, bool writes, std::uint32_t site) {

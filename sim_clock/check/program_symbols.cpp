@@ -1,0 +1,92 @@
+#include "sim_clock/check/program_symbols.hpp"
+
+#include <cxxabi.h>
+#include <fcntl.h>
+#include <gelf.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "sim_clock/world/object_names.hpp"
+#include "sim_clock/world/program_image.hpp"
+#include "sim_clock/world/task.hpp"
+
+namespace ltsim {
+namespace {
+
+std::string readable(const char* name) {
+  int status = 0;
+  const std::unique_ptr<char, decltype(&std::free)> demangled{abi::__cxa_demangle(name, nullptr, nullptr, &status),
+                                                              &std::free};
+  std::string text = status == 0 ? demangled.get() : name;
+  make_one_word(text);
+  return text;
+}
+
+class ProgramSymbols {
+ public:
+  ProgramSymbols() {
+    elf_version(EV_CURRENT);
+    const int file = open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    if (Elf* const elf = elf_begin(file, ELF_C_READ, nullptr); elf != nullptr) {
+      read_tables(elf);
+      elf_end(elf);
+    }
+    close(file);
+    std::stable_sort(symbols_.begin(), symbols_.end(),
+                     [](const ProgramSymbol& a, const ProgramSymbol& b) { return a.offset < b.offset; });
+  }
+
+  [[nodiscard]] const ProgramSymbol& at(std::uint32_t offset) const {
+    auto next = std::upper_bound(symbols_.begin(), symbols_.end(), offset,
+                                 [](std::uint32_t wanted, const ProgramSymbol& each) { return wanted < each.offset; });
+    if (next == symbols_.begin()) return all_;
+    --next;
+    return offset - next->offset < next->bytes ? *next : all_;
+  }
+
+ private:
+  void read_tables(Elf* elf) {
+    for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf, section)) != nullptr;) {
+      GElf_Shdr header;
+      if (gelf_getshdr(section, &header) == nullptr || header.sh_type != SHT_SYMTAB || header.sh_entsize == 0) continue;
+      Elf_Data* const data = elf_getdata(section, nullptr);
+      for (std::size_t i = 0; data != nullptr && i < header.sh_size / header.sh_entsize; ++i) {
+        GElf_Sym symbol;
+        if (gelf_getsym(data, static_cast<int>(i), &symbol) != nullptr) add(elf, header.sh_link, symbol);
+      }
+    }
+  }
+
+  void add(Elf* elf, std::size_t names, const GElf_Sym& symbol) {
+    if (GELF_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size == 0) return;
+    const auto variables = ProgramImage::variables();
+    const std::uintptr_t offset =
+        symbol.st_value + ProgramImage::loaded_at() - reinterpret_cast<std::uintptr_t>(variables.data());
+    if (offset >= variables.size()) return;
+    const char* const name = elf_strptr(elf, names, symbol.st_name);
+    if (name == nullptr) return;
+    symbols_.push_back({.name = readable(name),
+                        .offset = static_cast<std::uint32_t>(offset),
+                        .bytes = static_cast<std::uint32_t>(symbol.st_size)});
+  }
+
+  std::vector<ProgramSymbol> symbols_;  // by offset
+  ProgramSymbol all_{.name = "variables",
+                     .offset = 0,
+                     .bytes = static_cast<std::uint32_t>(ProgramImage::variables().size())};
+};
+
+}  // namespace
+
+const ProgramSymbol& symbol_at(std::uint32_t offset) {
+  const GhostScope ghost;  // the file is the host's
+  static const ProgramSymbols symbols;
+  return symbols.at(offset);
+}
+
+}  // namespace ltsim
