@@ -48,10 +48,18 @@ class Bell {
     }
     for (Listener* const listener : snapshot) listener->on_ring();
 #endif
+    const std::lock_guard<std::mutex> guard(mutex_);
+    ++times_rung_;
+  }
+
+  [[nodiscard]] int times_rung() {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    return times_rung_;
   }
 
  private:
   std::mutex mutex_;
+  int times_rung_ = 0;
   std::vector<std::shared_ptr<Listener>> listeners_;
 };
 
@@ -64,6 +72,6 @@ int main() {
   std::thread leaver(&Bell::sign_off_first, &bell);
   visitor.join();
   leaver.join();
-  assert(stays->rings() == 1);
+  assert(bell.times_rung() == 1 && stays->rings() == 1);
   return 0;
 }
