@@ -7,11 +7,14 @@
 # Line tables say where in the sources the two accesses of a data race stand. A build with debug information has them anyway.
 # Where an access stands is known by the return address of its call, so no call may be made into a jump.
 #
+# A project may ask everywhere for optimisation at link time. Not here: with gcc the pass would run only then, and linking does not
+# ask for it.
+#
 # The package brings this file to other projects: it knows the compiler and the target, and nothing of this project.
 function(ltsim_instrument target)
   set(no_debug_information "$<NOT:$<CONFIG:Debug,RelWithDebInfo>>")
   target_compile_options(${target} PRIVATE -fno-builtin-memcpy -fno-builtin-memmove -fno-builtin-memset
-                                           -fno-optimize-sibling-calls)
+                                           -fno-optimize-sibling-calls -fno-lto)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_compile_options(${target} PRIVATE $<${no_debug_information}:-gline-tables-only>)
     # clang's driver offers no flag for the pass alone; these are LLVM's.
