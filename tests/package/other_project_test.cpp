@@ -3,6 +3,8 @@
 // One of its threads is started by libstdc++: a program that does not link the world as a whole has it run outside of the world.
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -12,6 +14,7 @@
 
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 class OtherProject : public testing::Test {
@@ -54,6 +57,21 @@ TEST_F(OtherProject, has_nothing_found_and_a_proof_where_the_race_is_corrected) 
   EXPECT_THAT(explored.output, HasSubstr("nothing found: 5000 executions"));
   const auto proved = car_park_scenarios("prove car-park/take");
   EXPECT_EQ(proved.exit_code, 0) << proved.output;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream{file};
+  return {std::istreambuf_iterator<char>{stream}, {}};
+}
+
+TEST(BuildFileInTheReadme, is_that_of_the_other_project) {
+  const std::string readme = text_of(LTSIM_SOURCE_DIR "/README.md");
+  const std::string opening = "```cmake\n";
+  const std::size_t begin = readme.find(opening);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = readme.find("```", begin + opening.size());
+  const std::string shown = readme.substr(begin + opening.size(), end - begin - opening.size());
+  EXPECT_THAT(text_of(LTSIM_SOURCE_DIR "/tests/consumer/CMakeLists.txt"), EndsWith(shown));
 }
 
 }  // namespace
