@@ -6,41 +6,26 @@
 #
 # Line tables say where in the sources the two accesses of a data race stand. A build with debug information has them anyway.
 # Where an access stands is known by the return address of its call, so no call may be made into a jump.
+#
+# A project may ask everywhere for optimisation at link time. Not here: with gcc the pass would run only then, and linking does not
+# ask for it.
+#
+# The package brings this file to other projects: it knows the compiler and the target, and nothing of this project.
 function(ltsim_instrument target)
   set(no_debug_information "$<NOT:$<CONFIG:Debug,RelWithDebInfo>>")
   target_compile_options(${target} PRIVATE -fno-builtin-memcpy -fno-builtin-memmove -fno-builtin-memset
-                                           -fno-optimize-sibling-calls)
+                                           -fno-optimize-sibling-calls -fno-lto)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_compile_options(${target} PRIVATE $<${no_debug_information}:-gline-tables-only>)
     # clang's driver offers no flag for the pass alone; these are LLVM's.
     target_compile_options(${target} PRIVATE -fsanitize=thread "SHELL:-mllvm -tsan-distinguish-volatile=1"
                                              "SHELL:-mllvm -tsan-instrument-func-entry-exit=0")
-  else()
+  elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # gcc warns of fences because its own runtime does not follow them; the world does.
     target_compile_options(${target} PRIVATE $<${no_debug_information}:-g1> -Wno-tsan)
     target_compile_options(${target} PRIVATE -fsanitize=thread "SHELL:--param tsan-distinguish-volatile=1"
                                              "SHELL:--param tsan-instrument-func-entry-exit=0")
+  else()
+    message(FATAL_ERROR "ltsim_instrument(${target}): with gcc or clang only, not with ${CMAKE_CXX_COMPILER_ID}")
   endif()
-endfunction()
-
-# ltsim_instrumented_twin(protocol): library ltsim::protocol_instrumented from the very sources of ltsim::protocol. What the
-# original links of the libraries that have a twin, the twin links as their twins.
-function(ltsim_instrumented_twin name)
-  get_target_property(sources ltsim_${name} SOURCES)
-  get_target_property(folder ltsim_${name} SOURCE_DIR)
-  get_target_property(links ltsim_${name} INTERFACE_LINK_LIBRARIES)
-  list(TRANSFORM sources PREPEND ${folder}/)
-  add_library(ltsim_${name}_instrumented STATIC ${sources})
-  add_library(ltsim::${name}_instrumented ALIAS ltsim_${name}_instrumented)
-  target_include_directories(ltsim_${name}_instrumented PUBLIC ${PROJECT_SOURCE_DIR})
-  foreach(link IN LISTS links)
-    if(TARGET ${link}_instrumented)
-      target_link_libraries(ltsim_${name}_instrumented PUBLIC ${link}_instrumented)
-    elseif(NOT link MATCHES "LINK_ONLY")
-      target_link_libraries(ltsim_${name}_instrumented PUBLIC ${link})
-    endif()
-  endforeach()
-  target_link_libraries(ltsim_${name}_instrumented PRIVATE ltsim_options ltsim_coverage)
-  ltsim_instrument(ltsim_${name}_instrumented)
-  target_precompile_headers(ltsim_${name}_instrumented REUSE_FROM ltsim_precompiled_instrumented)
 endfunction()

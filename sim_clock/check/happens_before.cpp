@@ -1,5 +1,6 @@
 #include "sim_clock/check/happens_before.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace ltsim {
@@ -49,12 +50,18 @@ void HappensBefore::reset() noexcept {
 
 void HappensBefore::begins(TaskId task) {
   clocks_.make_room_for(task);
-  tasks_[task] = {.now = clocks_.take(), .fenced = none, .received = none};
+  tasks_[task] = {.now = clocks_.take(), .fenced = none, .received = none, .family = none};
+  if (follows_family_) tasks_[task].family = clocks_.take();
   tick(task);  // 0 is what everybody knows of everybody
 }
 
 void HappensBefore::follows(TaskId later, TaskId earlier) noexcept {
   clocks_.join(tasks_[later].now, tasks_[earlier].now);
+  if (follows_family_) {
+    clocks_.join(tasks_[later].family, tasks_[earlier].family);
+    Ticks& known = clocks_.at(tasks_[later].family)[earlier];
+    known = std::max(known, now(earlier));
+  }
   tick(earlier);  // a creator goes on, and what it does then is not covered
 }
 

@@ -46,6 +46,9 @@ class HappensBefore {
   HappensBefore();
   void reset() noexcept;
 
+  /// From the next execution on, is_ordered_by_family() is known.
+  void follow_family() noexcept { follows_family_ = true; }
+
   /// A new task, which comes after nothing.
   void begins(TaskId task);
   /// All that `earlier` has done comes before what `later` does from now on: it made the task, it was joined
@@ -87,6 +90,11 @@ class HappensBefore {
 
   /// The clock of a task: what it does now is known to those who know at least that much of it.
   [[nodiscard]] Ticks now(TaskId task) const noexcept { return clocks_.at(tasks_[task].now)[task]; }
+  /// Whether what `earlier` did at that time of its clock comes before all that `later` does from now on for the only reason that tasks
+  /// make others and join them: no schedule has it the other way round.
+  [[nodiscard]] bool is_ordered_by_family(TaskId earlier, Ticks ticks, TaskId later) const noexcept {
+    return ticks <= clocks_.at(tasks_[later].family)[earlier];
+  }
   /// What `task` knows, by task number.
   [[nodiscard]] const Ticks* known_to(TaskId task) const noexcept { return clocks_.at(tasks_[task].now); }
 
@@ -98,6 +106,7 @@ class HappensBefore {
     Row now = none;       // what happened before its next step
     Row fenced = none;    // what its last release fence covers: later relaxed stores hand that over
     Row received = none;  // what its relaxed loads saw handed over: an acquire fence makes it known
+    Row family = none;    // what happened before its next step because tasks were made and joined
   };
   struct Slot {
     std::uint64_t key = 0;
@@ -118,6 +127,7 @@ class HappensBefore {
   std::vector<Slot> slots_;  // open addressing; a power of two of them, at most half used
   std::size_t slots_used_ = 0;
   std::uint32_t generation_ = 0;
+  bool follows_family_ = false;
 };
 
 }  // namespace ltsim

@@ -32,6 +32,7 @@ class Search {
     for (; word + 1 <= end; ++word) look_at(*word);
   }
 
+  /// Those that nothing looked at so far leads to.
   std::vector<std::size_t> lost() {
     const auto blocks = ProgramHeap::blocks();
     while (!to_look_at_.empty()) {
@@ -52,9 +53,9 @@ class Search {
   std::vector<std::size_t> to_look_at_;
 };
 
-/// Variables of all modules but the one that this code is in: what the simulator notes is not the program's.
-int look_at_module(dl_phdr_info* module, std::size_t /*size*/, void* search) {
-  const auto own = reinterpret_cast<std::uintptr_t>(&look_at_module);
+/// Variables of the libraries, but not of the one that this code is in: what the simulator notes is not the program's.
+int look_at_library(dl_phdr_info* module, std::size_t /*size*/, void* search) {
+  const auto own = reinterpret_cast<std::uintptr_t>(&look_at_library);
   const std::span headers{module->dlpi_phdr, module->dlpi_phnum};
   const auto begin_of = [&](const ElfW(Phdr) & header) { return module->dlpi_addr + header.p_vaddr; };
   const bool is_own = std::any_of(headers.begin(), headers.end(), [&](const ElfW(Phdr) & header) {
@@ -72,9 +73,11 @@ int look_at_module(dl_phdr_info* module, std::size_t /*size*/, void* search) {
 }  // namespace
 
 std::vector<std::size_t> lost_blocks(World& world, const void* stack) {
-  if (ProgramHeap::blocks().empty()) return {};
+  const auto blocks = ProgramHeap::blocks();
+  if (std::all_of(blocks.begin(), blocks.end(), [](const ProgramHeap::Block& block) { return block.is_freed; })) return {};
   Search search;
-  dl_iterate_phdr(&look_at_module, &search);
+  const auto variables = ProgramImage::variables();
+  search.look_at(variables.data(), variables.data() + variables.size());
   const Scheduler& scheduler = world.scheduler();
   for (std::size_t i = 0; i < scheduler.tasks_count(); ++i) {
     const Task& task = scheduler.task(static_cast<TaskId>(i));
@@ -83,6 +86,9 @@ std::vector<std::size_t> lost_blocks(World& world, const void* stack) {
     search.look_at(begin, task.storage->stack_top());
     task.storage->visit_thread_locals([&](std::uintptr_t word) { search.look_at(word); });
   }
+  std::vector<std::size_t> lost = search.lost();
+  if (lost.empty()) return lost;  // mostly; the libraries have much more memory than the program
+  dl_iterate_phdr(&look_at_library, &search);
   return search.lost();
 }
 

@@ -27,6 +27,8 @@ class MemoryChecks {
   /// What orders tasks is followed in this execution, also if the checks are off. Before the first task begins.
   void follow_order() noexcept { follows_order_ = true; }
   [[nodiscard]] HappensBefore& order() noexcept { return order_; }
+  /// See HappensBefore. In all executions.
+  void follow_family() noexcept { order_.follow_family(); }
 
   /// On or off for the executions that begin from now on.
   void set_on(bool on) noexcept { wanted_on_ = on; }
@@ -58,8 +60,8 @@ class MemoryChecks {
     const RaceDetector::LastWrite last = races_.access(access);
     if (reads) coverage_.reads_from(last, access);
   }
-  [[nodiscard]] bool was_accessed_by_others(SharedPlace place, TaskId task) const noexcept {
-    return races_.was_accessed_by_others(place, task);
+  [[nodiscard]] RaceDetector::Others others_at(const SharedAccess& access) const noexcept {
+    return races_.others_at(access);
   }
   /// Something else lies there from now on.
   void made_anew(SharedPlace place, std::size_t bytes) noexcept { races_.forget(place, bytes); }

@@ -66,13 +66,24 @@ RaceDetector::LastWrite RaceDetector::access(const SharedAccess& access) {
   return last;
 }
 
-bool RaceDetector::was_accessed_by_others(SharedPlace place, TaskId task) const noexcept {
-  const Granule& granule = granules_[place / granule_bytes];
-  if (granule.generation != generation_) return false;
-  for (std::uint32_t number = granule.first; number != none; number = cells_[number].next) {
-    if (cells_[number].task != task) return true;
+RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const noexcept {
+  Others others;
+  const Ticks* const known = order_.known_to(access.task);
+  for (std::size_t index = access.place / granule_bytes; index * granule_bytes < access.place + access.bytes; ++index) {
+    const Granule& granule = granules_[index];
+    if (granule.generation != generation_) continue;
+    for (std::uint32_t number = granule.first; number != none; number = cells_[number].next) {
+      const Cell& cell = cells_[number];
+      if (cell.task == access.task) continue;
+      others.any = true;
+      if (!access.writes && (cell.flags & write_flag) == 0) continue;
+      const bool is_plain = access.plain || (cell.flags & plain_flag) != 0;
+      others.contend = others.contend ||
+                       (is_plain ? cell.ticks > known[cell.task]
+                                 : !order_.is_ordered_by_family(cell.task, cell.ticks, access.task));
+    }
   }
-  return false;
+  return others;
 }
 
 void RaceDetector::forget(SharedPlace place, std::size_t bytes) noexcept {

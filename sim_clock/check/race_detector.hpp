@@ -65,9 +65,15 @@ class RaceDetector {
   /// @return who wrote last before this access, where it begins
   LastWrite access(const SharedAccess& access);
 
-  /// Whether a task other than this one has accessed one of the eight bytes around the place, by a plain access or an atomic one, in
-  /// this execution.
-  [[nodiscard]] bool was_accessed_by_others(SharedPlace place, TaskId task) const noexcept;
+  struct Others {
+    bool any = false;
+    /// One of them wrote, or this one is about to, and the order of the two can be another one in another execution: both are
+    /// atomic, and who made and joined whom does not order them; or it is a race. What locks order is not meant: there the order of
+    /// the locks is what can be another one.
+    bool contend = false;
+  };
+  /// Who else has accessed, in this execution, one of the bytes that `access` is about to.
+  [[nodiscard]] Others others_at(const SharedAccess& access) const noexcept;
 
   /// What was accessed there is gone, and what is there now is something else.
   void forget(SharedPlace place, std::size_t bytes) noexcept;

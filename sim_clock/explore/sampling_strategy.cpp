@@ -77,7 +77,7 @@ SlowMoment SamplingStrategy::draw_slow_moment() noexcept {
 
 std::size_t SamplingStrategy::note_use(TaskId task, const Operation& operation) noexcept {
   const std::size_t thing = experience_->things.thing_of(operation);
-  if (thing != SharedThings::none) experience_->things.use(thing, task);
+  if (thing != SharedThings::none) experience_->things.use(thing, task, operation.is_contended);
   return thing;
 }
 

@@ -46,6 +46,7 @@ std::size_t SharedThings::thing_of(const Operation& operation) noexcept {
     const std::size_t thing = slots_[slot] - std::size_t{1};
     if (keys_[thing] == key) return thing;
   }
+  if (operation.object >= first_program_object && !operation.is_contended) return none;
   if (count_ == things_max) return things_max - 1;
   keys_[count_] = key;
   users_[count_] = nobody;

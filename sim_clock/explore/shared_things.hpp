@@ -26,13 +26,14 @@ class SharedThings {
   void begin() noexcept;
   void learn() noexcept;
 
-  /// @return 0 to count() - 1, or none
+  /// @return 0 to count() - 1, or none: also memory of a whole program that was not contended for so far
   [[nodiscard]] std::size_t thing_of(const Operation& operation) noexcept;
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
   /// `task` uses the thing. Known from the next learn() on: an execution that is run again knows no more than
   /// at its first run.
-  void use(std::size_t thing, TaskId task) noexcept {
+  void use(std::size_t thing, TaskId task, bool is_contended) noexcept {
+    if (is_contended) users_[thing] = several;
     if (users_[thing] == nobody) users_[thing] = task;
     if (users_[thing] != task) users_[thing] = several;
   }

@@ -1,5 +1,7 @@
 #include "sim_clock/program/whole_program.hpp"
 
+#include <sys/single_threaded.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -18,6 +20,7 @@ namespace {
 class WholeProgram {
  public:
   explicit WholeProgram(const ProgramStart& start) : start_(start) {
+    __libc_single_threaded = 0;  // a variable of the program, if its code looks at it: see World
     const auto variables = ProgramImage::variables();
     variables_.assign(variables.begin(), variables.end());
     ProgramHeap::keep_for_each_execution();
@@ -27,7 +30,7 @@ class WholeProgram {
   void execute(World& world) {
     restore();
     world.set_exit([this, &world](int status, const void* stack) { exit(world, status, stack); });
-    world.process(scenario_name_of(start_.arguments.front())).start("main", [this, &world] {
+    world.process("program").start("main", [this, &world] {
       const int status = start_.main(static_cast<int>(arguments_.size()), pointers_.data(), start_.environment);
       exit(world, status, __builtin_frame_address(0));
     });

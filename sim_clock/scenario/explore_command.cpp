@@ -56,13 +56,16 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
                            const Failure& failure, const std::string& path, const FileResult& written) {
   const std::string call = as_shell_word(std::string{program});
   if (!failure.has_schedule) {
+    const Scenario& scenario = scenario_of_name(failure.schedule.scenario);
+    std::string what = as_shell_word(failure.schedule.scenario);
+    if (!scenario.program.empty()) what = "--";
+    for (const std::string& word : scenario.program) what += " " + as_shell_word(word);
     // All up to there: what the strategy has learned by then belongs to it.
-    fmt::print("  again:  {} explore {} --strategy {} --seed {} --jobs {} --executions {}{}{}{}\n", call,
-               as_shell_word(failure.schedule.scenario), arguments.strategy, arguments.options.seed,
-               arguments.jobs, failure.execution,
+    fmt::print("  again:  {} explore --strategy {} --seed {} --jobs {} --executions {}{}{}{} {}\n", call,
+               arguments.strategy, arguments.options.seed, arguments.jobs, failure.execution,
                arguments.options.memory == Memory::sc ? "" : " --memory c11",
                arguments.options.cpu == Cpu::many ? "" : " --cpu one-fifo",
-               arguments.options.keep_going ? " --keep-going" : "");
+               arguments.options.keep_going ? " --keep-going" : "", what);
   } else if (written) {
     fmt::print("  replay:  {} replay {}\n", call, as_shell_word(path));
   } else {
@@ -79,6 +82,16 @@ std::string progress_text(const ExploreProgress& progress, const ExploreProgress
                      executions / (progress.elapsed - shown.elapsed).count(), progress.failures);
 }
 
+/// What the program has written in the failing execution.
+void tell_output(const std::string& path, const std::string& output) {
+  const FileResult written = write_file(path, output);
+  if (written) {
+    fmt::print("  output:  {}\n", path);
+  } else {
+    fmt::print("  {}: cannot be written: {}\n", path, written.error());
+  }
+}
+
 /// Tells each failure and writes its schedule.
 void tell_failures(const ExploreArguments& arguments, std::string_view program, ScenarioReport& report) {
   for (const Failure& failure : report.explored.failures) {
@@ -89,6 +102,7 @@ void tell_failures(const ExploreArguments& arguments, std::string_view program, 
         failure.has_schedule ? write_file(path, to_string(failure.schedule)) : FileResult{};
     tell_how_to_see_again(arguments, program, failure, path, written);
     report.schedule_paths.push_back(failure.has_schedule && written ? path : "");
+    if (!failure.output.empty()) tell_output(std::filesystem::path{path}.replace_extension(".output").string(), failure.output);
   }
 }
 

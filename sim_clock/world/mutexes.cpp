@@ -78,7 +78,9 @@ Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
     state.execution = world_.execution_number();
     const GhostScope ghost;
     state.number = static_cast<std::uint32_t>(locks_.size());
-    state.object = world_.objects().add(fmt::format("mutex-{}", locks_.size() + 1));
+    std::string name = world_.program_memory().object_name(mutex);
+    if (name.empty()) name = fmt::format("mutex-{}", locks_.size() + 1);
+    state.object = world_.objects().add(name);
     locks_.push_back({.object = state.object, .owner_plus_one = 0});
     state_changed(state);
   }

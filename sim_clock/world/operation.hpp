@@ -85,6 +85,8 @@ enum class OperationKind : std::uint8_t {
 
 /// Number of a named thing of the world: a semaphore, a segment, a mutex; 0 is "no object".
 using ObjectId = std::uint32_t;
+/// From here on: memory of a whole program (ProgramMemory).
+inline constexpr ObjectId first_program_object = 0xfffff1;
 
 struct Operation {
   OperationKind kind = OperationKind::read;
@@ -92,7 +94,9 @@ struct Operation {
   /// Of what opens or unlinks an object by name, which is not known as one yet: a hash of that name, so that some that have
   /// nothing to do with each other can be told apart; 0 = no name.
   std::uint8_t name = 0;
-  bool is_seq_cst = false;  ///< an atomic operation or a fence of that memory order
+  bool is_seq_cst : 1 = false;  ///< an atomic operation or a fence of that memory order
+  /// Of an access to memory of a whole program: RaceDetector::Others::contend.
+  bool is_contended : 1 = false;
   ObjectId object = 0;      ///< what it acts on
   /// Of a memory access in a segment: the byte. Of what has no object: the low half of the address, which tells
   /// places apart and means nothing in another run; 0 = nothing in particular.

@@ -71,30 +71,31 @@ ProgramMemory::Place ProgramMemory::of(SharedPlace place) noexcept {
 
 Operation ProgramMemory::access(const volatile void* address, const Place& place, std::size_t bytes,
                                 OperationKind kind, std::uint32_t site, bool is_seq_cst) noexcept {
-  const Operation operation{.kind = kind,
-                            .bytes = static_cast<std::uint8_t>(bytes),
-                            .is_seq_cst = is_seq_cst,
-                            .object = place.object,
-                            .offset = place.offset,
-                            .site = site};
+  Operation operation{.kind = kind,
+                      .bytes = static_cast<std::uint8_t>(bytes),
+                      .is_seq_cst = is_seq_cst,
+                      .object = place.object,
+                      .offset = place.offset,
+                      .site = site};
   if (place.object == heap_object) check_heap(address, bytes, kind, site);
   Scheduler& scheduler = world_.scheduler();
   if (scheduler.tasks_count() == 1) return operation;
   const bool is_atomic = kind != OperationKind::read && kind != OperationKind::write;
   const bool is_on_own_stack =
       place.object == stacks_object && current_task->storage->slot() == place.offset / TaskStorage::stack_bytes;
-  if (is_atomic || !is_on_own_stack || world_.checks().was_accessed_by_others(place.place, current_task->id)) {
+  const SharedAccess shared{.task = current_task->id,
+                            .place = place.place,
+                            .bytes = operation.bytes,
+                            .writes = changes_memory(kind),
+                            .plain = !is_atomic,
+                            .site = site};
+  const RaceDetector::Others others = world_.checks().others_at(shared);
+  operation.is_contended = others.contend;
+  if (is_atomic || !is_on_own_stack || others.any) {
     scheduler.point(operation);
     if (place.object == heap_object) check_heap(address, bytes, kind, site);  // somebody may have freed it meanwhile
   }
-  if (is_atomic || !world_.checks().on()) return operation;
-  world_.checks().accessed({.task = current_task->id,
-                            .place = place.place,
-                            .bytes = operation.bytes,
-                            .writes = kind == OperationKind::write,
-                            .plain = true,
-                            .site = site},
-                           kind == OperationKind::read);
+  if (!is_atomic && world_.checks().on()) world_.checks().accessed(shared, kind == OperationKind::read);
   return operation;
 }
 
@@ -142,15 +143,12 @@ void* ProgramMemory::reallocate(void* address, std::size_t bytes, const void* ca
 void ProgramMemory::fail_to_free(const void* address) noexcept {
   const GhostScope ghost;
   const std::uint32_t offset = ProgramHeap::offset_of(address);
-  const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
-  const std::string& who = world_.scheduler().running()->name;
-  if (block != nullptr && block->offset == offset) {
-    world_.scheduler().fail(OutcomeKind::crash, fmt::format("{} frees {} again: {}", who, name(*block), history(*block)));
-  }
-  world_.scheduler().fail(
-      OutcomeKind::crash,
-      fmt::format("{} frees an address where no block begins{}", who,
-                  block == nullptr ? "" : fmt::format(": {}[{}]", name(*block), offset - block->offset)));
+  world_.scheduler().fail_described(OutcomeKind::crash, [this, offset, who = world_.scheduler().running()->name] {
+    const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
+    if (block == nullptr) return fmt::format("{} frees an address where no block begins", who);
+    if (block->offset == offset) return fmt::format("{} frees {} again: {}", who, name(*block), history(*block));
+    return fmt::format("{} frees an address where no block begins: {}[{}]", who, name(*block), offset - block->offset);
+  });
 }
 
 std::string ProgramMemory::history(const ProgramHeap::Block& block) const {
@@ -170,12 +168,16 @@ std::string ProgramMemory::history(const ProgramHeap::Block& block) const {
 
 void ProgramMemory::check_leaks(const void* stack) {
   const GhostScope ghost;
-  std::string text;
-  for (const std::size_t lost : lost_blocks(world_, stack)) {
-    const ProgramHeap::Block& block = ProgramHeap::blocks()[lost];
-    text += fmt::format("{}{} is lost: {}", text.empty() ? "" : "; ", name(block), history(block));
-  }
-  if (!text.empty()) world_.scheduler().fail(OutcomeKind::leak, std::move(text));
+  std::vector<std::size_t> lost = lost_blocks(world_, stack);
+  if (lost.empty()) return;
+  world_.scheduler().fail_described(OutcomeKind::leak, [this, lost = std::move(lost)] {
+    std::string text;
+    for (const std::size_t each : lost) {
+      const ProgramHeap::Block& block = ProgramHeap::blocks()[each];
+      text += fmt::format("{}{} is lost: {}", text.empty() ? "" : "; ", name(block), history(block));
+    }
+    return text;
+  });
 }
 
 void ProgramMemory::check_heap(const volatile void* address, std::size_t bytes, OperationKind kind,
@@ -185,18 +187,17 @@ void ProgramMemory::check_heap(const volatile void* address, std::size_t bytes, 
     return;
   const GhostScope ghost;
   const std::uint32_t offset = ProgramHeap::offset_of(address);
-  const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
-  std::string what = "the heap where no block is";
-  if (block != nullptr && access == ProgramHeap::Access::freed) {
-    what = fmt::format("{}[{}] after it was freed: {}", name(*block), offset - block->offset, history(*block));
-  } else if (block != nullptr) {
-    what = fmt::format("{} bytes at {}[{}], beyond its end: {}", bytes, name(*block), offset - block->offset,
-                       history(*block));
-  }
-  const std::string& location = source_location(site);
-  world_.scheduler().fail(OutcomeKind::crash,
-                          fmt::format("{} {} {}{}", world_.scheduler().running()->name, verb(kind),
-                                      location.empty() ? "" : "at " + location + " ", what));
+  world_.scheduler().fail_described(
+      OutcomeKind::crash, [this, offset, bytes, kind, site, access, who = world_.scheduler().running()->name] {
+        const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
+        const std::string& location = source_location(site);
+        const std::string begin = fmt::format("{} {}{} ", who, verb(kind), location.empty() ? "" : " at " + location + ":");
+        if (block == nullptr) return begin + "the heap where no block is";
+        const std::string what = fmt::format("{}[{}]", name(*block), offset - block->offset);
+        return access == ProgramHeap::Access::freed
+                   ? fmt::format("{}{} after it was freed: {}", begin, what, history(*block))
+                   : fmt::format("{}{} bytes at {}, beyond its end: {}", begin, bytes, what, history(*block));
+      });
 }
 
 std::uint64_t ProgramMemory::value_at(const Operation& operation) noexcept {
@@ -219,6 +220,20 @@ std::string ProgramMemory::name(const ProgramHeap::Block& block) const {
   return block.owner == ProgramHeap::no_owner
              ? fmt::format("heap.start-{}", block.number)
              : fmt::format("heap.{}-{}", short_name(world_.scheduler().task(block.owner)), block.number);
+}
+
+std::string ProgramMemory::object_name(const volatile void* address) const {
+  const auto with_offset = [](std::string of, std::uint32_t offset) {
+    return offset == 0 ? of : fmt::format("{}+{}", of, offset);
+  };
+  const auto place = is_on() ? find(address) : std::nullopt;
+  if (!place || place->object == stacks_object) return {};
+  if (place->object == variables_object) {
+    const ProgramSymbol& symbol = symbol_at(place->offset);
+    return with_offset(symbol.name, place->offset - symbol.offset);
+  }
+  const ProgramHeap::Block* const block = ProgramHeap::block_at(place->offset);
+  return block == nullptr ? std::string{} : with_offset(name(*block), place->offset - block->offset);
 }
 
 std::string ProgramMemory::name(const Operation& operation) const {

@@ -30,9 +30,9 @@ class ProgramMemory {
   static constexpr std::size_t places_end = std::size_t{1} << 30U;
 
   // Objects of Operation; no world has so many others.
-  static constexpr ObjectId variables_object = 0xfffff1;
-  static constexpr ObjectId heap_object = 0xfffff2;
-  static constexpr ObjectId stacks_object = 0xfffff3;
+  static constexpr ObjectId variables_object = first_program_object;
+  static constexpr ObjectId heap_object = first_program_object + 1;
+  static constexpr ObjectId stacks_object = first_program_object + 2;
 
   struct Place {
     ObjectId object = 0;
@@ -78,6 +78,9 @@ class ProgramMemory {
   /// With the byte in it: "counter[4]", if it has more than those that are accessed.
   [[nodiscard]] std::string place(const Operation& operation) const;
   [[nodiscard]] std::string name(const ProgramHeap::Block& block) const;
+  /// Of an object of several bytes that begins at the address: "ledger_lock", "queue+40", "heap.main-3+16"; empty if it lies nowhere
+  /// that has a name.
+  [[nodiscard]] std::string object_name(const volatile void* address) const;
 
  private:
   void check_heap(const volatile void* address, std::size_t bytes, OperationKind kind,

@@ -52,6 +52,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   is_abandoned_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
+  describe_outcome_ = nullptr;
   idle_checks_.clear();
   held_up_notes_.clear();
 }
@@ -133,6 +134,7 @@ void Scheduler::run() {
   const auto options = candidates(0);
   running_ = tasks_[options.size() == 1 ? options[0] : choose_task(options, 0, false)].get();
   Context::switch_between(main_context_, running_->context);
+  describe_failure();
 }
 
 void Scheduler::run_task(void* argument) noexcept {
@@ -328,6 +330,16 @@ void Scheduler::fail(OutcomeKind kind, std::string message) {
   running_ = nullptr;
   Context::switch_between(self.context, main_context_);
   LTSIM_UNREACHABLE("a task of a failed execution was resumed");
+}
+
+void Scheduler::fail_described(OutcomeKind kind, std::function<std::string()> describe) {
+  if (outcome_.passed()) describe_outcome_ = std::move(describe);
+  fail(kind, std::string{});
+  describe_failure();
+}
+
+void Scheduler::describe_failure() {
+  if (const auto describe = std::exchange(describe_outcome_, nullptr); describe) outcome_.message = describe();
 }
 
 void Scheduler::abandon() noexcept {

@@ -144,6 +144,10 @@ class Scheduler {
 
   /// Ends the execution with this outcome; the first one counts. Inside a task it does not return.
   void fail(OutcomeKind kind, std::string message);
+  /// The same with a message that is made outside of the task, for what looks at debug information: the library that reads that takes
+  /// locks, and for libc a task is no thread.
+  /// @param describe  outlives the execution: of what a task has on its stack it holds copies
+  void fail_described(OutcomeKind kind, std::function<std::string()> describe);
 
   /// Ends the execution, which the strategy is not interested in any more. Inside a task it does not return.
   void abandon() noexcept;
@@ -179,6 +183,7 @@ class Scheduler {
   void set_name(Task& task, ProcessId process, std::string_view name);
   static void run_task(void* task) noexcept;
   void finish_running() noexcept;
+  void describe_failure();
   /// Goes from the running task, which will not run again, to the next, or back to run().
   void leave(Task& self) noexcept;
   /// The next task after the running one stopped being runnable; null when all have finished.
@@ -276,6 +281,7 @@ class Scheduler {
   bool steps_are_checked_ = false;
   bool is_abandoned_ = false;
   Outcome outcome_;
+  std::function<std::string()> describe_outcome_;  // until its message is made
   std::vector<std::function<void()>> idle_checks_;
   std::vector<std::function<void(SimTime)>> held_up_notes_;
 };

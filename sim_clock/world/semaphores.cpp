@@ -92,6 +92,7 @@ int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
 std::string Semaphores::name_by_place(const sem_t* handle) const {
   const bool begins_a_segment =
       Segments::contains(handle) && Segments::offset_in_segment(Segments::place_of(handle)) == 0;
+  if (std::string name = world_.program_memory().object_name(handle); !name.empty()) return name;
   if (!begins_a_segment) return fmt::format("semaphore-{}", count_ + 1);
   return std::string{world_.objects().object_name(world_.segments().segment_at(Segments::place_of(handle)))};
 }

@@ -84,6 +84,7 @@ World::World() {
   // Tasks are threads: libstdc++ must not take its short cuts for programs with one thread only, which leave
   // reference counts and guards of static variables without protection.
   __libc_single_threaded = 0;
+  if (ProgramMemory::is_on()) checks_.follow_family();
 }
 
 World::~World() {
