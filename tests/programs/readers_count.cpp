@@ -2,13 +2,19 @@
 // Bug: a reader that finds the document empty leaves without counting itself out; the writer never gets in.
 // Correction: it counts itself out like any other.
 
+#include <semaphore.h>
+
 #include <cstdio>
 #include <mutex>
-#include <semaphore>
 #include <thread>
 
 class Document {
  public:
+  Document() { sem_init(&room_, 0, 1); }
+  ~Document() { sem_destroy(&room_); }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
   int read() {
     enter();
     const int text = text_;
@@ -20,25 +26,25 @@ class Document {
   }
 
   void write(int text) {
-    room_.acquire();
+    sem_wait(&room_);
     text_ = text;
-    room_.release();
+    sem_post(&room_);
   }
 
  private:
   void enter() {
     const std::lock_guard<std::mutex> guard(counting_);
-    if (++readers_ == 1) room_.acquire();
+    if (++readers_ == 1) sem_wait(&room_);
   }
 
   void leave() {
     const std::lock_guard<std::mutex> guard(counting_);
-    if (--readers_ == 0) room_.release();
+    if (--readers_ == 0) sem_post(&room_);
   }
 
   std::mutex counting_;
   int readers_ = 0;
-  std::binary_semaphore room_{1};
+  sem_t room_;
   int text_ = 0;
 };
 
