@@ -29,19 +29,6 @@ void refuse(const char* name) noexcept {
     return next(a, b, c, d, e, f);                                                               \
   }
 
-LTSIM_REFUSED(pthread_rwlock_rdlock)
-LTSIM_REFUSED(pthread_rwlock_wrlock)
-LTSIM_REFUSED(pthread_rwlock_tryrdlock)
-LTSIM_REFUSED(pthread_rwlock_trywrlock)
-LTSIM_REFUSED(pthread_rwlock_timedrdlock)
-LTSIM_REFUSED(pthread_rwlock_timedwrlock)
-LTSIM_REFUSED(pthread_rwlock_clockrdlock)
-LTSIM_REFUSED(pthread_rwlock_clockwrlock)
-LTSIM_REFUSED(pthread_rwlock_unlock)
-LTSIM_REFUSED(pthread_spin_lock)
-LTSIM_REFUSED(pthread_spin_trylock)
-LTSIM_REFUSED(pthread_spin_unlock)
-LTSIM_REFUSED(pthread_barrier_wait)
 LTSIM_REFUSED(pthread_cancel)
 LTSIM_REFUSED(pthread_exit)
 LTSIM_REFUSED(pthread_kill)

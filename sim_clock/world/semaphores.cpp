@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/world/object_key.hpp"
 #include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/world.hpp"
@@ -247,8 +248,7 @@ Semaphores::Semaphore& Semaphores::arrive_at(sem_t* handle, OperationKind kind) 
 }
 
 WaitKey Semaphores::key_of(const Semaphore& semaphore) noexcept {
-  const std::uint64_t process = semaphore.shared ? 0 : current_task->process + 1U;
-  return std::uint64_t{1} << 62U | process << 32U | semaphore.object;
+  return object_key(semaphore.object, semaphore.shared);
 }
 
 void Semaphores::add_state(StateHash& hash) const noexcept {

@@ -29,14 +29,18 @@
 #include "sim_clock/check/single_fetch.hpp"
 #include "sim_clock/check/written_first.hpp"
 #include "sim_clock/clock/deadline.hpp"
+#include "sim_clock/world/barriers.hpp"
 #include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
 #include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
+#include "sim_clock/world/rwlocks.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/semaphores.hpp"
+#include "sim_clock/world/spin_locks.hpp"
+#include "sim_clock/world/static_guards.hpp"
 #include "sim_clock/world/threads.hpp"
 #include "sim_clock/world/weak_memory.hpp"
 #include "sim_clock/world/whole_state.hpp"
@@ -278,6 +282,14 @@ class World {
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
+  [[nodiscard]] Rwlocks& rwlocks() noexcept { return rwlocks_; }
+  [[nodiscard]] const Rwlocks& rwlocks() const noexcept { return rwlocks_; }
+  [[nodiscard]] SpinLocks& spin_locks() noexcept { return spin_locks_; }
+  [[nodiscard]] const SpinLocks& spin_locks() const noexcept { return spin_locks_; }
+  [[nodiscard]] Barriers& barriers() noexcept { return barriers_; }
+  [[nodiscard]] const Barriers& barriers() const noexcept { return barriers_; }
+  [[nodiscard]] StaticGuards& static_guards() noexcept { return static_guards_; }
+  [[nodiscard]] const StaticGuards& static_guards() const noexcept { return static_guards_; }
   /// For what the scenario has declared: the running task performs `operation` next.
   void check_step(const Task& task, const Operation& operation) noexcept {
     fetches_.performs(task, operation);
@@ -353,6 +365,10 @@ class World {
   SingleFetch fetches_{*this};
   WrittenFirst written_first_{*this};
   WholeState whole_state_{*this};
+  Rwlocks rwlocks_{*this};
+  SpinLocks spin_locks_{*this};
+  Barriers barriers_{*this};
+  StaticGuards static_guards_{*this};
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
