@@ -180,6 +180,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   spin_locks_.reset();
   barriers_.reset();
   static_guards_.reset();
+  thread_specific_.reset();
   faults_.reset();
   damages_.reset();
   fetches_.reset();
@@ -196,6 +197,7 @@ void World::add_state(StateHash& hash) const noexcept {
   spin_locks_.add_state(hash);
   barriers_.add_state(hash);
   static_guards_.add_state(hash);
+  thread_specific_.add_state(hash);
   faults_.add_state(hash);
   damages_.add_state(hash);
   fetches_.add_state(hash);

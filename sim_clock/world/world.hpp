@@ -41,6 +41,7 @@
 #include "sim_clock/world/semaphores.hpp"
 #include "sim_clock/world/spin_locks.hpp"
 #include "sim_clock/world/static_guards.hpp"
+#include "sim_clock/world/thread_specific.hpp"
 #include "sim_clock/world/threads.hpp"
 #include "sim_clock/world/weak_memory.hpp"
 #include "sim_clock/world/whole_state.hpp"
@@ -290,6 +291,7 @@ class World {
   [[nodiscard]] const Barriers& barriers() const noexcept { return barriers_; }
   [[nodiscard]] StaticGuards& static_guards() noexcept { return static_guards_; }
   [[nodiscard]] const StaticGuards& static_guards() const noexcept { return static_guards_; }
+  [[nodiscard]] ThreadSpecific& thread_specific() noexcept { return thread_specific_; }
   /// For what the scenario has declared: the running task performs `operation` next.
   void check_step(const Task& task, const Operation& operation) noexcept {
     fetches_.performs(task, operation);
@@ -369,6 +371,7 @@ class World {
   SpinLocks spin_locks_{*this};
   Barriers barriers_{*this};
   StaticGuards static_guards_{*this};
+  ThreadSpecific thread_specific_;
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
