@@ -181,6 +181,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   barriers_.reset();
   static_guards_.reset();
   thread_specific_.reset();
+  random_numbers_.reset();
   faults_.reset();
   damages_.reset();
   fetches_.reset();
@@ -198,6 +199,7 @@ void World::add_state(StateHash& hash) const noexcept {
   barriers_.add_state(hash);
   static_guards_.add_state(hash);
   thread_specific_.add_state(hash);
+  random_numbers_.add_state(hash);
   faults_.add_state(hash);
   damages_.add_state(hash);
   fetches_.add_state(hash);

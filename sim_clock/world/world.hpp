@@ -35,6 +35,7 @@
 #include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
+#include "sim_clock/world/random_numbers.hpp"
 #include "sim_clock/world/rwlocks.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
@@ -292,6 +293,7 @@ class World {
   [[nodiscard]] StaticGuards& static_guards() noexcept { return static_guards_; }
   [[nodiscard]] const StaticGuards& static_guards() const noexcept { return static_guards_; }
   [[nodiscard]] ThreadSpecific& thread_specific() noexcept { return thread_specific_; }
+  [[nodiscard]] RandomNumbers& random_numbers() noexcept { return random_numbers_; }
   /// For what the scenario has declared: the running task performs `operation` next.
   void check_step(const Task& task, const Operation& operation) noexcept {
     fetches_.performs(task, operation);
@@ -372,6 +374,7 @@ class World {
   Barriers barriers_{*this};
   StaticGuards static_guards_{*this};
   ThreadSpecific thread_specific_;
+  RandomNumbers random_numbers_;
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;
