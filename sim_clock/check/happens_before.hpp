@@ -26,8 +26,10 @@ struct SyncKey {
   static SyncKey atomic(std::uint64_t place) noexcept { return {place}; }
   static SyncKey futex(std::uint64_t place) noexcept { return {place ^ std::uint64_t{1} << 56U}; }
   static SyncKey once(std::uint64_t place) noexcept { return {place ^ std::uint64_t{2} << 56U}; }
-  /// A mutex or a semaphore.
+  /// A semaphore, a mutex, a barrier; a lock for readers and writers, as its writers leave it.
   static SyncKey object(std::uint32_t id) noexcept { return {std::uint64_t{3} << 56U | id}; }
+  /// A lock for readers and writers, as its readers leave it: to each other they hand over nothing.
+  static SyncKey readers(std::uint32_t id) noexcept { return {std::uint64_t{4} << 56U | id}; }
 };
 
 enum class AtomicAccess : std::uint8_t { load, store, update };

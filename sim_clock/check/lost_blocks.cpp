@@ -28,7 +28,8 @@ class Search {
   }
 
   void look_at(const void* begin, const void* end) {
-    const auto* word = reinterpret_cast<const std::uintptr_t*>((reinterpret_cast<std::uintptr_t>(begin) + 7) & ~std::uintptr_t{7});
+    const auto* word = reinterpret_cast<const std::uintptr_t*>((reinterpret_cast<std::uintptr_t>(begin) + 7) &
+                                                               ~std::uintptr_t{7});
     for (; word + 1 <= end; ++word) look_at(*word);
   }
 
@@ -74,7 +75,9 @@ int look_at_library(dl_phdr_info* module, std::size_t /*size*/, void* search) {
 
 std::vector<std::size_t> lost_blocks(World& world, const void* stack) {
   const auto blocks = ProgramHeap::blocks();
-  if (std::all_of(blocks.begin(), blocks.end(), [](const ProgramHeap::Block& block) { return block.is_freed; })) return {};
+  if (std::all_of(blocks.begin(), blocks.end(),
+                  [](const ProgramHeap::Block& block) { return block.is_freed; }))
+    return {};
   Search search;
   const auto variables = ProgramImage::variables();
   search.look_at(variables.data(), variables.data() + variables.size());

@@ -1,6 +1,8 @@
 #include "sim_clock/check/no_progress.hpp"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,13 +17,45 @@ std::string words(const World& world, const Operation& operation) {
   return fmt::format("{}{}{}", to_string(operation.kind), name == "-" ? "" : " ", name == "-" ? "" : name);
 }
 
-/// The task without which `task`, which is blocked, cannot go on; null if there is no one such task.
-const Task* awaited_by(const World& world, const Task& task) {
-  if (Mutexes::is_mutex_key(task.wait_key))
-    return world.mutexes().owner_of(world.scheduler().pending(task).object);
+/// The tasks without which `task`, which is blocked, cannot go on; none if that is nobody in particular.
+std::vector<const Task*> awaited_by(const World& world, const Task& task) {
   if (World::is_join_key(task.wait_key))
-    return &world.scheduler().task(World::task_of_join_key(task.wait_key));
-  return nullptr;
+    return {&world.scheduler().task(World::task_of_join_key(task.wait_key))};
+  const ObjectId object = world.scheduler().pending(task).object;
+  const Task* owner = nullptr;
+  if (Mutexes::is_mutex_key(task.wait_key)) {
+    owner = world.mutexes().owner_of(object);
+  } else {
+    switch (world.scheduler().pending(task).kind) {
+      case OperationKind::rwlock_rdlock:
+      case OperationKind::rwlock_timedrdlock:
+      case OperationKind::rwlock_wrlock:
+      case OperationKind::rwlock_timedwrlock: {
+        std::vector<const Task*> holders;
+        for (const TaskId holder : world.rwlocks().holders_of(object))
+          holders.push_back(&world.scheduler().task(holder));
+        return holders;
+      }
+      case OperationKind::spin_lock:
+        owner = world.spin_locks().owner_of(object);
+        break;
+      case OperationKind::static_init:
+        owner = world.static_guards().owner_of(object);
+        break;
+      default:
+        break;
+    }
+  }
+  return owner == nullptr ? std::vector<const Task*>{} : std::vector{owner};
+}
+
+/// The one of them by which a circle may close; null: none.
+const Task* next_in_circle(const World& world, const Task& task) {
+  const auto all = awaited_by(world, task);
+  const auto blocked = std::find_if(
+      all.begin(), all.end(), [](const Task* awaited) { return awaited->state == Task::State::blocked; });
+  if (blocked != all.end()) return *blocked;
+  return all.empty() ? nullptr : all.front();
 }
 
 std::string_view who_is_missing(OperationKind kind) noexcept {
@@ -43,14 +77,19 @@ std::string_view who_is_missing(OperationKind kind) noexcept {
 std::string waiting(const World& world, const Task& task, bool nobody_is_left) {
   const Operation& operation = world.scheduler().pending(task);
   std::string text = fmt::format("{} waits in {}", task.name, words(world, operation));
-  const Task* const awaited = awaited_by(world, task);
-  if (awaited == nullptr) {
-    if (nobody_is_left) text += who_is_missing(operation.kind);
-    return text;
+  if (operation.kind == OperationKind::barrier_wait)
+    text += fmt::format(", where {}", world.barriers().describe(operation.object));
+  const auto awaited = awaited_by(world, task);
+  if (awaited.empty() && nobody_is_left) text += who_is_missing(operation.kind);
+  std::string_view before = World::is_join_key(task.wait_key)              ? " for"
+                            : operation.kind == OperationKind::static_init ? ", at which is"
+                                                                           : ", held by";
+  for (const Task* const each : awaited) {
+    text += fmt::format("{} {}", before, each->name);
+    if (each->state == Task::State::finished) text += ", which has ended";
+    if (each->state == Task::State::killed) text += ", which was killed";
+    before = " and by";
   }
-  text += fmt::format("{} {}", Mutexes::is_mutex_key(task.wait_key) ? ", held by" : " for", awaited->name);
-  if (awaited->state == Task::State::finished) text += ", which has ended";
-  if (awaited->state == Task::State::killed) text += ", which was killed";
   return text;
 }
 
@@ -71,7 +110,7 @@ std::string describe_deadlock(const World& world) {
     const Task* last = &first;
     std::size_t length = 0;
     do {
-      last = awaited_by(world, *last);
+      last = next_in_circle(world, *last);
       ++length;
     } while (last != nullptr && last != &first && is_blocked(*last) && length < scheduler.tasks_count());
     if (last != &first) continue;
@@ -79,7 +118,7 @@ std::string describe_deadlock(const World& world) {
     const Task* member = &first;
     do {
       text += (member == &first ? "" : "; ") + tell(*member);
-      member = awaited_by(world, *member);
+      member = next_in_circle(world, *member);
     } while (member != &first);
   }
   for (std::size_t i = 0; i < scheduler.tasks_count(); ++i) {

@@ -19,8 +19,8 @@ namespace {
 
 std::string readable(const char* name) {
   int status = 0;
-  const std::unique_ptr<char, decltype(&std::free)> demangled{abi::__cxa_demangle(name, nullptr, nullptr, &status),
-                                                              &std::free};
+  const std::unique_ptr<char, decltype(&std::free)> demangled{
+      abi::__cxa_demangle(name, nullptr, nullptr, &status), &std::free};
   std::string text = status == 0 ? demangled.get() : name;
   make_one_word(text);
   return text;
@@ -42,8 +42,9 @@ class ProgramSymbols {
   }
 
   [[nodiscard]] const ProgramSymbol& at(std::uint32_t offset) const {
-    auto next = std::upper_bound(symbols_.begin(), symbols_.end(), offset,
-                                 [](std::uint32_t wanted, const ProgramSymbol& each) { return wanted < each.offset; });
+    auto next = std::upper_bound(
+        symbols_.begin(), symbols_.end(), offset,
+        [](std::uint32_t wanted, const ProgramSymbol& each) { return wanted < each.offset; });
     if (next == symbols_.begin()) return all_;
     --next;
     return offset - next->offset < next->bytes ? *next : all_;
@@ -53,7 +54,8 @@ class ProgramSymbols {
   void read_tables(Elf* elf) {
     for (Elf_Scn* section = nullptr; (section = elf_nextscn(elf, section)) != nullptr;) {
       GElf_Shdr header;
-      if (gelf_getshdr(section, &header) == nullptr || header.sh_type != SHT_SYMTAB || header.sh_entsize == 0) continue;
+      if (gelf_getshdr(section, &header) == nullptr || header.sh_type != SHT_SYMTAB || header.sh_entsize == 0)
+        continue;
       Elf_Data* const data = elf_getdata(section, nullptr);
       for (std::size_t i = 0; data != nullptr && i < header.sh_size / header.sh_entsize; ++i) {
         GElf_Sym symbol;

@@ -30,6 +30,20 @@ bool ends_transaction(OperationKind kind) noexcept {
     case OperationKind::thread_join:
     case OperationKind::sleep:
     case OperationKind::yield:
+    case OperationKind::rwlock_rdlock:
+    case OperationKind::rwlock_tryrdlock:
+    case OperationKind::rwlock_timedrdlock:
+    case OperationKind::rwlock_wrlock:
+    case OperationKind::rwlock_trywrlock:
+    case OperationKind::rwlock_timedwrlock:
+    case OperationKind::rwlock_unlock:
+    case OperationKind::spin_lock:
+    case OperationKind::spin_trylock:
+    case OperationKind::spin_unlock:
+    case OperationKind::barrier_wait:
+    case OperationKind::static_init:
+    case OperationKind::thread_tryjoin:
+    case OperationKind::thread_timedjoin:
       return true;
     default:
       return false;

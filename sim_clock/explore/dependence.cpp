@@ -9,12 +9,13 @@ namespace {
 enum class Domain : std::uint8_t {
   nothing,     // its own task, or what another task can only wait for
   memory,      // bytes of a segment, or at an address
-  object,      // a semaphore or mutex
+  object,      // a semaphore, a lock or a barrier
   condition,   // conditions, and the mutex that it names
   futex,       // words that are waited on
   once,        // what is initialised once
   names,       // the names of semaphores and segments, and the sizes of the latter
   everything,  // the order matters to all
+  ends,        // whether a task has ended, which each of its steps may be the last before
 };
 
 Domain domain_of(OperationKind kind) noexcept {
@@ -36,6 +37,17 @@ Domain domain_of(OperationKind kind) noexcept {
     case OperationKind::mutex_trylock:
     case OperationKind::mutex_timedlock:
     case OperationKind::mutex_unlock:
+    case OperationKind::rwlock_rdlock:
+    case OperationKind::rwlock_tryrdlock:
+    case OperationKind::rwlock_timedrdlock:
+    case OperationKind::rwlock_wrlock:
+    case OperationKind::rwlock_trywrlock:
+    case OperationKind::rwlock_timedwrlock:
+    case OperationKind::rwlock_unlock:
+    case OperationKind::spin_lock:
+    case OperationKind::spin_trylock:
+    case OperationKind::spin_unlock:
+    case OperationKind::barrier_wait:
       return Domain::object;
     case OperationKind::cond_wait:
     case OperationKind::cond_timedwait:
@@ -46,7 +58,11 @@ Domain domain_of(OperationKind kind) noexcept {
     case OperationKind::futex_wake:
       return Domain::futex;
     case OperationKind::once:
+    case OperationKind::static_init:
       return Domain::once;
+    case OperationKind::thread_tryjoin:
+    case OperationKind::thread_timedjoin:
+      return Domain::ends;
     case OperationKind::sem_open:
     case OperationKind::sem_unlink:
     case OperationKind::shm_open:
@@ -94,6 +110,7 @@ bool order_matters(const StepEffect& one, const StepEffect& other, bool memory_i
   if (memory_is_weak && a.is_seq_cst && b.is_seq_cst) return true;
   const Domain of_a = domain_of(a.kind);
   const Domain of_b = domain_of(b.kind);
+  if (of_a == Domain::ends || of_b == Domain::ends) return true;
   if (of_a == Domain::nothing || of_b == Domain::nothing) return false;
   if (of_a == Domain::everything || of_b == Domain::everything) return true;
   if (only_looks(one) && only_looks(other)) return false;

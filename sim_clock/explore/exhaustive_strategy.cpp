@@ -36,6 +36,9 @@ bool uses_clock(OperationKind kind) noexcept {
     case OperationKind::mutex_timedlock:
     case OperationKind::cond_timedwait:
     case OperationKind::futex_wait:
+    case OperationKind::rwlock_timedrdlock:
+    case OperationKind::rwlock_timedwrlock:
+    case OperationKind::thread_timedjoin:
       return true;
     default:
       return false;

@@ -16,6 +16,9 @@ bool changes_something(const Operation& operation) noexcept {
     case OperationKind::cond_signal:
     case OperationKind::cond_broadcast:
     case OperationKind::futex_wake:
+    case OperationKind::rwlock_unlock:
+    case OperationKind::spin_unlock:
+    case OperationKind::barrier_wait:
       return true;
     default:
       return changes_memory(operation.kind);

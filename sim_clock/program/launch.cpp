@@ -36,7 +36,9 @@ std::string what_is_wrong_with(const std::string& path) {
   close(file);
   if (content == MAP_FAILED) return fmt::format("{}: {}", path, strerror(errno));
   const std::string_view text{static_cast<const char*>(content), bytes};
-  const bool is_program = text.starts_with("\x7f" "ELF");
+  const bool is_program = text.starts_with(
+      "\x7f"
+      "ELF");
   // In the table of the libraries that it needs.
   const bool needs_us = text.find(std::string_view{"\0libltsim.so\0", 13}) != std::string_view::npos;
   munmap(content, bytes);

@@ -37,8 +37,9 @@ int run_in_world(int count, char** arguments, char** environment) {
 /// @return null: there is no room
 void* new_block(std::size_t bytes, std::size_t alignment, const void* caller) noexcept {
   if (ProgramHeap::serves(caller)) return allocate_for_program(bytes, alignment, caller);
-  return alignment <= alignof(std::max_align_t) ? std::malloc(bytes)
-                                                : std::aligned_alloc(alignment, (bytes + alignment - 1) & ~(alignment - 1));
+  return alignment <= alignof(std::max_align_t)
+             ? std::malloc(bytes)
+             : std::aligned_alloc(alignment, (bytes + alignment - 1) & ~(alignment - 1));
 }
 
 void* new_block_or_throw(std::size_t bytes, std::size_t alignment, const void* caller) {
@@ -62,8 +63,8 @@ constexpr std::size_t usual = __STDCPP_DEFAULT_NEW_ALIGNMENT__;
 using ltsim::ProgramHeap;
 
 /// libc's, which a program's first instructions call; it runs the constructors of the program's static objects, then main().
-extern "C" int __libc_start_main(ltsim::Main main, int count, char** arguments, void (*init)(), void (*fini)(),
-                                 void (*rtld_fini)(), void* stack_end) {
+extern "C" int __libc_start_main(ltsim::Main main, int count, char** arguments, void (*init)(),
+                                 void (*fini)(), void (*rtld_fini)(), void* stack_end) {
   using Start = int (*)(ltsim::Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
   const auto next = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));
   ltsim::launch_command = ltsim::take_launch_command();
@@ -88,11 +89,10 @@ extern "C" int __cxa_atexit(void (*function)(void*), void* argument, void* modul
   return next(function, argument, module);
 }
 
-
 // operator new asks for memory in libstdc++: who really asks would not be known there.
 
-#define LTSIM_NEW(name, alignment, function, ...)                                        \
-  void* name(__VA_ARGS__) {                                                              \
+#define LTSIM_NEW(name, alignment, function, ...)                                                    \
+  void* name(__VA_ARGS__) {                                                                          \
     return ltsim::function(bytes, static_cast<std::size_t>(alignment), __builtin_return_address(0)); \
   }
 LTSIM_NEW(operator new, ltsim::usual, new_block_or_throw, std::size_t bytes)
@@ -100,8 +100,8 @@ LTSIM_NEW(operator new[], ltsim::usual, new_block_or_throw, std::size_t bytes)
 LTSIM_NEW(operator new, alignment, new_block_or_throw, std::size_t bytes, std::align_val_t alignment)
 LTSIM_NEW(operator new[], alignment, new_block_or_throw, std::size_t bytes, std::align_val_t alignment)
 
-#define LTSIM_NEW_NOTHROW(name, alignment, ...)                                          \
-  void* name(__VA_ARGS__, const std::nothrow_t& /*tag*/) noexcept {                      \
+#define LTSIM_NEW_NOTHROW(name, alignment, ...)                                                       \
+  void* name(__VA_ARGS__, const std::nothrow_t& /*tag*/) noexcept {                                   \
     return ltsim::new_block(bytes, static_cast<std::size_t>(alignment), __builtin_return_address(0)); \
   }
 LTSIM_NEW_NOTHROW(operator new, ltsim::usual, std::size_t bytes)
@@ -109,14 +109,16 @@ LTSIM_NEW_NOTHROW(operator new[], ltsim::usual, std::size_t bytes)
 LTSIM_NEW_NOTHROW(operator new, alignment, std::size_t bytes, std::align_val_t alignment)
 LTSIM_NEW_NOTHROW(operator new[], alignment, std::size_t bytes, std::align_val_t alignment)
 
-#define LTSIM_DELETE(name, ...) \
-  void name(void* block __VA_OPT__(, ) __VA_ARGS__) noexcept { ltsim::delete_block(block, __builtin_return_address(0)); }
-#define LTSIM_DELETES(name)                    \
-  LTSIM_DELETE(name)                           \
-  LTSIM_DELETE(name, std::size_t)              \
-  LTSIM_DELETE(name, std::align_val_t)         \
+#define LTSIM_DELETE(name, ...)                                \
+  void name(void* block __VA_OPT__(, ) __VA_ARGS__) noexcept { \
+    ltsim::delete_block(block, __builtin_return_address(0));   \
+  }
+#define LTSIM_DELETES(name)                         \
+  LTSIM_DELETE(name)                                \
+  LTSIM_DELETE(name, std::size_t)                   \
+  LTSIM_DELETE(name, std::align_val_t)              \
   LTSIM_DELETE(name, std::size_t, std::align_val_t) \
-  LTSIM_DELETE(name, const std::nothrow_t&)    \
+  LTSIM_DELETE(name, const std::nothrow_t&)         \
   LTSIM_DELETE(name, std::align_val_t, const std::nothrow_t&)
 LTSIM_DELETES(operator delete)
 LTSIM_DELETES(operator delete[])

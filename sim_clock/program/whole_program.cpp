@@ -31,7 +31,8 @@ class WholeProgram {
     restore();
     world.set_exit([this, &world](int status, const void* stack) { exit(world, status, stack); });
     world.process("program").start("main", [this, &world] {
-      const int status = start_.main(static_cast<int>(arguments_.size()), pointers_.data(), start_.environment);
+      const int status =
+          start_.main(static_cast<int>(arguments_.size()), pointers_.data(), start_.environment);
       exit(world, status, __builtin_frame_address(0));
     });
     capture_.begin();
@@ -63,7 +64,8 @@ class WholeProgram {
     world.program_memory().check_leaks(stack);
     constexpr int status_mask = 0xff;  // of which a parent gets to know
     if ((status & status_mask) != 0)
-      world.scheduler().fail(OutcomeKind::exit, fmt::format("the program ended with status {}", status & status_mask));
+      world.scheduler().fail(OutcomeKind::exit,
+                             fmt::format("the program ended with status {}", status & status_mask));
     world.finish();
   }
 

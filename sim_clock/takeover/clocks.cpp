@@ -1,7 +1,10 @@
-// Clocks, sleeping and sched_yield(2).
+// Clocks, sleeping and sched_yield(2). What of processors a process has used is all the time that has passed.
 
 #include <sched.h>
+#include <sys/resource.h>
 #include <sys/time.h>
+#include <sys/times.h>
+#include <threads.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -115,5 +118,45 @@ extern "C" unsigned sleep(unsigned seconds) {
 extern "C" int sched_yield() noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(sched_yield)();
   current_task->world->scheduler().point({.kind = ltsim::OperationKind::yield});
+  return 0;
+}
+
+// thrd_sleep(3) has results of its own: -1 where it was interrupted, and less for an error.
+extern "C" int thrd_sleep(const timespec* duration, timespec* remaining) {
+  if (current_task == nullptr) return LTSIM_NEXT(thrd_sleep)(duration, remaining);
+  if (!is_valid(*duration)) return -2;
+  return sleep_for(*duration, remaining) == 0 ? 0 : -1;
+}
+
+extern "C" void thrd_yield() {
+  if (current_task == nullptr) return LTSIM_NEXT(thrd_yield)();
+  current_task->world->scheduler().point({.kind = ltsim::OperationKind::yield});
+}
+
+extern "C" clock_t clock() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(clock)();
+  const timespec time = current_task->world->read_clock(CLOCK_PROCESS_CPUTIME_ID);
+  return time.tv_sec * CLOCKS_PER_SEC + time.tv_nsec / (1'000'000'000 / CLOCKS_PER_SEC);
+}
+
+extern "C" clock_t times(tms* into) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(times)(into);
+  constexpr long ticks_per_second = 100;  // sysconf(_SC_CLK_TCK) of Linux
+  const timespec time = current_task->world->read_clock(CLOCK_PROCESS_CPUTIME_ID);
+  const clock_t ticks = time.tv_sec * ticks_per_second + time.tv_nsec / (1'000'000'000 / ticks_per_second);
+  if (into != nullptr) *into = {.tms_utime = ticks, .tms_stime = 0, .tms_cutime = 0, .tms_cstime = 0};
+  return ticks;
+}
+
+extern "C" int getrusage(__rusage_who_t who, rusage* into) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(getrusage)(who, into);
+  if (who != RUSAGE_SELF && who != RUSAGE_CHILDREN && who != RUSAGE_THREAD) {
+    errno = EINVAL;
+    return -1;
+  }
+  *into = {};
+  if (who == RUSAGE_CHILDREN) return 0;
+  const timespec time = current_task->world->read_clock(CLOCK_PROCESS_CPUTIME_ID);
+  into->ru_utime = {.tv_sec = time.tv_sec, .tv_usec = time.tv_nsec / 1000};
   return 0;
 }

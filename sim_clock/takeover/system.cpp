@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstdarg>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -89,6 +90,35 @@ extern "C" ssize_t getrandom(void* buffer, std::size_t bytes, unsigned flags) {
   for (std::size_t i = 0; i < bytes; ++i)
     static_cast<unsigned char*>(buffer)[i] = static_cast<unsigned char>(generator.next());
   return static_cast<ssize_t>(bytes);
+}
+
+extern "C" int getentropy(void* buffer, std::size_t bytes) {
+  if (current_task == nullptr) return LTSIM_NEXT(getentropy)(buffer, bytes);
+  constexpr std::size_t bytes_max = 256;  // getentropy(3)
+  if (bytes > bytes_max) {
+    errno = EIO;
+    return -1;
+  }
+  getrandom(buffer, bytes, 0);
+  return 0;
+}
+
+extern "C" void arc4random_buf(void* buffer, std::size_t bytes) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(arc4random_buf)(buffer, bytes);
+  getrandom(buffer, bytes, 0);
+}
+
+extern "C" std::uint32_t arc4random() noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(arc4random)();
+  std::uint32_t number = 0;
+  getrandom(&number, sizeof number, 0);
+  return number;
+}
+
+extern "C" std::uint32_t arc4random_uniform(std::uint32_t bound) noexcept {
+  if (current_task == nullptr) return LTSIM_NEXT(arc4random_uniform)(bound);
+  if (bound < 2) return 0;
+  return ltsim::RandomGenerator{current_task->world->next_random_draw()}.below(bound);
 }
 
 extern "C" long syscall(long number, ...) noexcept {

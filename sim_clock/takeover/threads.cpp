@@ -15,8 +15,13 @@ using ltsim::current_task;
 
 namespace {
 
-bool is_simulated(pthread_t thread) noexcept {
-  return ltsim::TaskStorage::is_of_a_task(reinterpret_cast<const void*>(thread));
+bool is_valid(const timespec& time) noexcept { return time.tv_nsec >= 0 && time.tv_nsec < 1'000'000'000; }
+
+int join_before(pthread_t thread, void** result, clockid_t clock, const timespec* deadline) noexcept {
+  ltsim::World& world = *current_task->world;
+  if (deadline == nullptr) return world.threads().join(thread, result);
+  if (!is_valid(*deadline)) return EINVAL;
+  return world.threads().timed_join(thread, result, world.to_deadline(clock, *deadline));
 }
 
 }  // namespace
@@ -32,13 +37,35 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
 
 extern "C" int pthread_join(pthread_t thread, void** result) {
   if (current_task != nullptr) return current_task->world->threads().join(thread, result);
-  if (is_simulated(thread)) return 0;
+  if (ltsim::Threads::is_simulated(thread)) return 0;
   return LTSIM_NEXT(pthread_join)(thread, result);
+}
+
+extern "C" int pthread_tryjoin_np(pthread_t thread, void** result) noexcept {
+  if (current_task != nullptr) return current_task->world->threads().try_join(thread, result);
+  if (ltsim::Threads::is_simulated(thread)) return 0;
+  return LTSIM_NEXT(pthread_tryjoin_np)(thread, result);
+}
+
+extern "C" int pthread_timedjoin_np(pthread_t thread, void** result, const timespec* deadline) {
+  if (current_task != nullptr) return join_before(thread, result, CLOCK_REALTIME, deadline);
+  if (ltsim::Threads::is_simulated(thread)) return 0;
+  return LTSIM_NEXT(pthread_timedjoin_np)(thread, result, deadline);
+}
+
+extern "C" int pthread_clockjoin_np(pthread_t thread, void** result, clockid_t clock,
+                                    const timespec* deadline) {
+  if (current_task != nullptr) {
+    if (clock != CLOCK_REALTIME && clock != CLOCK_MONOTONIC) return EINVAL;
+    return join_before(thread, result, clock, deadline);
+  }
+  if (ltsim::Threads::is_simulated(thread)) return 0;
+  return LTSIM_NEXT(pthread_clockjoin_np)(thread, result, clock, deadline);
 }
 
 extern "C" int pthread_detach(pthread_t thread) noexcept {
   if (current_task != nullptr) return current_task->world->threads().detach(thread);
-  if (is_simulated(thread)) return 0;
+  if (ltsim::Threads::is_simulated(thread)) return 0;
   return LTSIM_NEXT(pthread_detach)(thread);
 }
 

@@ -25,6 +25,7 @@ bool is_own_business(const Operation& operation) noexcept {
     case OperationKind::sleep:
     case OperationKind::yield:
     case OperationKind::once:
+    case OperationKind::static_init:
     case OperationKind::thread_start:
     case OperationKind::shm_open:
     case OperationKind::shm_status:

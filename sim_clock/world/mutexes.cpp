@@ -78,9 +78,8 @@ Mutexes::State& Mutexes::resolve(pthread_mutex_t* mutex) noexcept {
     state.execution = world_.execution_number();
     const GhostScope ghost;
     state.number = static_cast<std::uint32_t>(locks_.size());
-    std::string name = world_.program_memory().object_name(mutex);
-    if (name.empty()) name = fmt::format("mutex-{}", locks_.size() + 1);
-    state.object = world_.objects().add(name);
+    state.object =
+        world_.objects().add(world_.program_memory().object_name(mutex, "mutex", locks_.size() + 1));
     locks_.push_back({.object = state.object, .owner_plus_one = 0});
     state_changed(state);
   }
@@ -99,7 +98,7 @@ int Mutexes::timed_lock(pthread_mutex_t* mutex, Deadline deadline) noexcept {
 
 int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
   State& state = resolve(mutex);
-  world_.scheduler().point(operation_on(OperationKind::mutex_trylock, state.object));
+  world_.point_at(mutex, operation_on(OperationKind::mutex_trylock, state.object));
   const std::uint32_t self = current_task->id + 1U;
   if (state.owner_plus_one == self && (state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
     ++state.locked_count;
@@ -114,7 +113,7 @@ int Mutexes::try_lock(pthread_mutex_t* mutex) noexcept {
 }
 
 int Mutexes::acquire(State& state, const void* address, OperationKind kind, Deadline deadline) noexcept {
-  world_.scheduler().point(operation_on(kind, state.object));
+  world_.point_at(static_cast<const pthread_mutex_t*>(address), operation_on(kind, state.object));
   const std::uint32_t self = current_task->id + 1U;
   if (state.owner_plus_one == self) {
     if ((state.kind & kind_mask) == PTHREAD_MUTEX_RECURSIVE) {
@@ -168,7 +167,7 @@ void Mutexes::state_changed(const State& state) noexcept {
 
 int Mutexes::unlock(pthread_mutex_t* mutex) noexcept {
   State& state = resolve(mutex);
-  world_.scheduler().point(operation_on(OperationKind::mutex_unlock, state.object));
+  world_.point_at(mutex, operation_on(OperationKind::mutex_unlock, state.object));
   if (const int error = check_owner(state); error != 0) return error;
   if (--state.locked_count == 0) release(state, mutex);
   state_changed(state);
@@ -314,13 +313,13 @@ int Mutexes::wait_until(pthread_cond_t* condition, pthread_mutex_t* mutex, Opera
 }
 
 int Mutexes::signal(pthread_cond_t* condition) noexcept {
-  world_.scheduler().point(operation_on(OperationKind::cond_signal));
+  world_.point_at(condition, operation_on(OperationKind::cond_signal));
   world_.scheduler().wake(condition_key(condition), 1);
   return 0;
 }
 
 int Mutexes::broadcast(pthread_cond_t* condition) noexcept {
-  world_.scheduler().point(operation_on(OperationKind::cond_broadcast));
+  world_.point_at(condition, operation_on(OperationKind::cond_broadcast));
   world_.scheduler().wake(condition_key(condition), tasks_max);
   return 0;
 }

@@ -86,6 +86,34 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "yield";
     case OperationKind::atomic_fence:
       return "atomic_fence";
+    case OperationKind::rwlock_rdlock:
+      return "rwlock_rdlock";
+    case OperationKind::rwlock_tryrdlock:
+      return "rwlock_tryrdlock";
+    case OperationKind::rwlock_timedrdlock:
+      return "rwlock_timedrdlock";
+    case OperationKind::rwlock_wrlock:
+      return "rwlock_wrlock";
+    case OperationKind::rwlock_trywrlock:
+      return "rwlock_trywrlock";
+    case OperationKind::rwlock_timedwrlock:
+      return "rwlock_timedwrlock";
+    case OperationKind::rwlock_unlock:
+      return "rwlock_unlock";
+    case OperationKind::spin_lock:
+      return "spin_lock";
+    case OperationKind::spin_trylock:
+      return "spin_trylock";
+    case OperationKind::spin_unlock:
+      return "spin_unlock";
+    case OperationKind::barrier_wait:
+      return "barrier_wait";
+    case OperationKind::static_init:
+      return "static_init";
+    case OperationKind::thread_tryjoin:
+      return "thread_tryjoin";
+    case OperationKind::thread_timedjoin:
+      return "thread_timedjoin";
   }
   return "?";
 }

@@ -50,6 +50,20 @@ enum class OperationKind : std::uint8_t {
   sleep,
   yield,
   atomic_fence,
+  rwlock_rdlock,
+  rwlock_tryrdlock,
+  rwlock_timedrdlock,
+  rwlock_wrlock,
+  rwlock_trywrlock,
+  rwlock_timedwrlock,
+  rwlock_unlock,
+  spin_lock,
+  spin_trylock,
+  spin_unlock,
+  barrier_wait,
+  static_init,
+  thread_tryjoin,
+  thread_timedjoin,
 };
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
@@ -65,6 +79,7 @@ enum class OperationKind : std::uint8_t {
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
 [[nodiscard]] constexpr bool can_be_polling(OperationKind kind) noexcept {
   // Asked at each scheduling point.
+  static_assert(static_cast<unsigned>(OperationKind::thread_timedjoin) < 64, "the last kind has a bit, too");
   constexpr std::uint64_t polling = [] {
     std::uint64_t bits = 0;
     for (const OperationKind looks :
@@ -72,7 +87,9 @@ enum class OperationKind : std::uint8_t {
           OperationKind::atomic_exchange,  // the loop of a spin lock
           OperationKind::sem_open, OperationKind::sem_trywait, OperationKind::sem_getvalue,
           OperationKind::mutex_trylock, OperationKind::shm_open, OperationKind::shm_status,
-          OperationKind::clock_read, OperationKind::yield}) {
+          OperationKind::clock_read, OperationKind::yield, OperationKind::rwlock_tryrdlock,
+          OperationKind::rwlock_trywrlock, OperationKind::spin_lock, OperationKind::spin_trylock,
+          OperationKind::thread_tryjoin}) {
       bits |= std::uint64_t{1} << static_cast<unsigned>(looks);
     }
     return bits;
@@ -97,7 +114,7 @@ struct Operation {
   bool is_seq_cst : 1 = false;  ///< an atomic operation or a fence of that memory order
   /// Of an access to memory of a whole program: RaceDetector::Others::contend.
   bool is_contended : 1 = false;
-  ObjectId object = 0;      ///< what it acts on
+  ObjectId object = 0;  ///< what it acts on
   /// Of a memory access in a segment: the byte. Of what has no object: the low half of the address, which tells
   /// places apart and means nothing in another run; 0 = nothing in particular.
   std::uint32_t offset = 0;

@@ -18,8 +18,9 @@ constexpr std::size_t up_to(std::size_t bytes, std::size_t alignment) noexcept {
 }
 
 void* reserve(std::uintptr_t at, std::size_t bytes) {
-  void* const memory = mmap(reinterpret_cast<void*>(at), bytes, PROT_READ | PROT_WRITE,
-                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | (at == 0 ? 0 : MAP_FIXED_NOREPLACE), -1, 0);
+  void* const memory =
+      mmap(reinterpret_cast<void*>(at), bytes, PROT_READ | PROT_WRITE,
+           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | (at == 0 ? 0 : MAP_FIXED_NOREPLACE), -1, 0);
   LTSIM_CHECK(memory != MAP_FAILED);
   return memory;
 }

@@ -27,7 +27,7 @@ class ProgramHeap {
     std::uint32_t bytes = 0;
     TaskId owner = 0;          // the task that allocated it; no_owner: before main()
     std::uint32_t number = 0;  // which of its owner's, from 1
-    std::uint32_t site = 0;  // as in Operation: where it was allocated
+    std::uint32_t site = 0;    // as in Operation: where it was allocated
     TaskId freed_by = 0;
     std::uint32_t freed_site = 0;
     bool is_freed = false;
@@ -47,7 +47,8 @@ class ProgramHeap {
   /// Whether a block that is asked for now lies here: a task asks, or what runs before main().
   /// @param caller  return address of the call
   [[nodiscard]] static bool serves(const void* caller) noexcept {
-    return is_on() && (current_task != nullptr || serves_outside_tasks_) && ProgramImage::site_of(caller) != 0;
+    return is_on() && (current_task != nullptr || serves_outside_tasks_) &&
+           ProgramImage::site_of(caller) != 0;
   }
   static void serve_outside_tasks(bool yes) noexcept { serves_outside_tasks_ = yes; }
 
@@ -95,7 +96,7 @@ class ProgramHeap {
   static inline bool serves_outside_tasks_ = false;
   static inline std::uint8_t* marks_ = nullptr;  // a byte for each granule of the range
   static inline std::size_t used_bytes_ = 0;
-  static inline std::vector<Block> blocks_;  // by offset
+  static inline std::vector<Block> blocks_;          // by offset
   static inline std::vector<std::uint32_t> counts_;  // by owner, the last one for no_owner
 
   static inline std::vector<std::byte> kept_bytes_;

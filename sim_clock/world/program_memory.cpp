@@ -30,7 +30,10 @@ std::string_view short_name(const Task& task) noexcept {
   return name.substr(name.find('/') + 1);
 }
 
-std::string_view verb(OperationKind kind) noexcept { return changes_memory(kind) ? "writes" : "reads"; }
+std::string_view verb(OperationKind kind) noexcept {
+  if (!is_memory_access(kind)) return to_string(kind);
+  return changes_memory(kind) ? "writes" : "reads";
+}
 
 }  // namespace
 
@@ -58,8 +61,9 @@ std::optional<ProgramMemory::Place> ProgramMemory::find(const volatile void* add
   const std::uintptr_t in_range = at - TaskStorage::range_begin;
   const auto in_slot = static_cast<std::uint32_t>(in_range % slot_bytes);
   if (in_slot < no_access_bytes) return std::nullopt;  // SIGSEGV will say it
-  const auto offset = static_cast<std::uint32_t>((in_range >> TaskStorage::slot_shift) * TaskStorage::stack_bytes) +
-                      in_slot - no_access_bytes;
+  const auto offset =
+      static_cast<std::uint32_t>((in_range >> TaskStorage::slot_shift) * TaskStorage::stack_bytes) + in_slot -
+      no_access_bytes;
   return Place{stacks_object, offset, stacks_first + offset};
 }
 
@@ -81,8 +85,8 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
   Scheduler& scheduler = world_.scheduler();
   if (scheduler.tasks_count() == 1) return operation;
   const bool is_atomic = kind != OperationKind::read && kind != OperationKind::write;
-  const bool is_on_own_stack =
-      place.object == stacks_object && current_task->storage->slot() == place.offset / TaskStorage::stack_bytes;
+  const bool is_on_own_stack = place.object == stacks_object &&
+                               current_task->storage->slot() == place.offset / TaskStorage::stack_bytes;
   const SharedAccess shared{.task = current_task->id,
                             .place = place.place,
                             .bytes = operation.bytes,
@@ -93,7 +97,8 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
   operation.is_contended = others.contend;
   if (is_atomic || !is_on_own_stack || others.any) {
     scheduler.point(operation);
-    if (place.object == heap_object) check_heap(address, bytes, kind, site);  // somebody may have freed it meanwhile
+    if (place.object == heap_object)
+      check_heap(address, bytes, kind, site);  // somebody may have freed it meanwhile
   }
   if (!is_atomic && world_.checks().on()) world_.checks().accessed(shared, kind == OperationKind::read);
   return operation;
@@ -102,8 +107,9 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
 void* ProgramMemory::allocate(std::size_t bytes, std::size_t alignment, const void* caller) noexcept {
   void* const block = ProgramHeap::allocate(bytes, alignment, ProgramImage::site_of(caller));
   if (block == nullptr)
-    world_.unsupported(fmt::format("{} asked for {} bytes; the heap of a program has {} MiB here, and none lies where another was",
-                                   current_task->name, bytes, ProgramHeap::range_bytes >> 20U));
+    world_.unsupported(fmt::format(
+        "{} asked for {} bytes; the heap of a program has {} MiB here, and none lies where another was",
+        current_task->name, bytes, ProgramHeap::range_bytes >> 20U));
   return block;
 }
 
@@ -113,18 +119,20 @@ void ProgramMemory::free(void* address, const void* caller) noexcept {
   // Whoever uses it at the same time uses what is not there any more: a write, to all of it.
   const std::uint32_t site = ProgramImage::site_of(caller);
   if (!block->is_freed && block->bytes != 0)
-    access(address, *find(address), std::min<std::size_t>(block->bytes, granule_bytes), OperationKind::write, site);
+    access(address, *find(address), std::min<std::size_t>(block->bytes, granule_bytes), OperationKind::write,
+           site);
   block = ProgramHeap::block_that_begins_at(address);  // others ran, and may have allocated
   if (block->is_freed) fail_to_free(address);
   if (world_.checks().on() && world_.scheduler().tasks_count() != 1) {
     for (std::uint32_t at = granule_bytes; at < block->bytes; at += granule_bytes) {
-      world_.checks().accessed({.task = current_task->id,
-                                .place = heap_first + block->offset + at,
-                                .bytes = static_cast<std::uint8_t>(std::min(block->bytes - at, granule_bytes)),
-                                .writes = true,
-                                .plain = true,
-                                .site = site},
-                               false);
+      world_.checks().accessed(
+          {.task = current_task->id,
+           .place = heap_first + block->offset + at,
+           .bytes = static_cast<std::uint8_t>(std::min(block->bytes - at, granule_bytes)),
+           .writes = true,
+           .plain = true,
+           .site = site},
+          false);
     }
   }
   ProgramHeap::free(*block, site);
@@ -143,12 +151,15 @@ void* ProgramMemory::reallocate(void* address, std::size_t bytes, const void* ca
 void ProgramMemory::fail_to_free(const void* address) noexcept {
   const GhostScope ghost;
   const std::uint32_t offset = ProgramHeap::offset_of(address);
-  world_.scheduler().fail_described(OutcomeKind::crash, [this, offset, who = world_.scheduler().running()->name] {
-    const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
-    if (block == nullptr) return fmt::format("{} frees an address where no block begins", who);
-    if (block->offset == offset) return fmt::format("{} frees {} again: {}", who, name(*block), history(*block));
-    return fmt::format("{} frees an address where no block begins: {}[{}]", who, name(*block), offset - block->offset);
-  });
+  world_.scheduler().fail_described(
+      OutcomeKind::crash, [this, offset, who = world_.scheduler().running()->name] {
+        const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
+        if (block == nullptr) return fmt::format("{} frees an address where no block begins", who);
+        if (block->offset == offset)
+          return fmt::format("{} frees {} again: {}", who, name(*block), history(*block));
+        return fmt::format("{} frees an address where no block begins: {}[{}]", who, name(*block),
+                           offset - block->offset);
+      });
 }
 
 std::string ProgramMemory::history(const ProgramHeap::Block& block) const {
@@ -158,11 +169,10 @@ std::string ProgramMemory::history(const ProgramHeap::Block& block) const {
   };
   std::string text = fmt::format("{} bytes, allocated{}", block.bytes, at(block.site));
   if (block.is_freed)
-    text += fmt::format(", freed{}{}",
-                        block.freed_by == ProgramHeap::no_owner
-                            ? ""
-                            : " by " + world_.scheduler().task(block.freed_by).name,
-                        at(block.freed_site));
+    text += fmt::format(
+        ", freed{}{}",
+        block.freed_by == ProgramHeap::no_owner ? "" : " by " + world_.scheduler().task(block.freed_by).name,
+        at(block.freed_site));
   return text;
 }
 
@@ -187,17 +197,18 @@ void ProgramMemory::check_heap(const volatile void* address, std::size_t bytes, 
     return;
   const GhostScope ghost;
   const std::uint32_t offset = ProgramHeap::offset_of(address);
-  world_.scheduler().fail_described(
-      OutcomeKind::crash, [this, offset, bytes, kind, site, access, who = world_.scheduler().running()->name] {
-        const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
-        const std::string& location = source_location(site);
-        const std::string begin = fmt::format("{} {}{} ", who, verb(kind), location.empty() ? "" : " at " + location + ":");
-        if (block == nullptr) return begin + "the heap where no block is";
-        const std::string what = fmt::format("{}[{}]", name(*block), offset - block->offset);
-        return access == ProgramHeap::Access::freed
-                   ? fmt::format("{}{} after it was freed: {}", begin, what, history(*block))
-                   : fmt::format("{}{} bytes at {}, beyond its end: {}", begin, bytes, what, history(*block));
-      });
+  world_.scheduler().fail_described(OutcomeKind::crash, [this, offset, bytes, kind, site, access,
+                                                         who = world_.scheduler().running()->name] {
+    const ProgramHeap::Block* const block = ProgramHeap::block_at(offset);
+    const std::string& location = source_location(site);
+    const std::string begin =
+        fmt::format("{} {}{} ", who, verb(kind), location.empty() ? "" : " at " + location + ":");
+    if (block == nullptr) return begin + "the heap where no block is";
+    const std::string what = fmt::format("{}[{}]", name(*block), offset - block->offset);
+    return access == ProgramHeap::Access::freed
+               ? fmt::format("{}{} after it was freed: {}", begin, what, history(*block))
+               : fmt::format("{}{} bytes at {}, beyond its end: {}", begin, bytes, what, history(*block));
+  });
 }
 
 std::uint64_t ProgramMemory::value_at(const Operation& operation) noexcept {
@@ -222,18 +233,20 @@ std::string ProgramMemory::name(const ProgramHeap::Block& block) const {
              : fmt::format("heap.{}-{}", short_name(world_.scheduler().task(block.owner)), block.number);
 }
 
-std::string ProgramMemory::object_name(const volatile void* address) const {
+std::string ProgramMemory::object_name(const volatile void* address, std::string_view kind,
+                                       std::size_t number) const {
   const auto with_offset = [](std::string of, std::uint32_t offset) {
     return offset == 0 ? of : fmt::format("{}+{}", of, offset);
   };
   const auto place = is_on() ? find(address) : std::nullopt;
-  if (!place || place->object == stacks_object) return {};
+  const auto numbered = [&] { return fmt::format("{}-{}", kind, number); };
+  if (!place || place->object == stacks_object) return numbered();
   if (place->object == variables_object) {
     const ProgramSymbol& symbol = symbol_at(place->offset);
     return with_offset(symbol.name, place->offset - symbol.offset);
   }
   const ProgramHeap::Block* const block = ProgramHeap::block_at(place->offset);
-  return block == nullptr ? std::string{} : with_offset(name(*block), place->offset - block->offset);
+  return block == nullptr ? numbered() : with_offset(name(*block), place->offset - block->offset);
 }
 
 std::string ProgramMemory::name(const Operation& operation) const {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "sim_clock/check/race_detector.hpp"
 #include "sim_clock/world/operation.hpp"
@@ -59,6 +60,11 @@ class ProgramMemory {
   Operation access(const volatile void* address, const Place& place, std::size_t bytes, OperationKind kind,
                    std::uint32_t site, bool is_seq_cst = false) noexcept;
 
+  /// The running task is about to use a synchronisation object. Ends the execution as a crash if it is not there (any more).
+  void check_object(const void* object, std::size_t bytes, OperationKind kind) noexcept {
+    if (ProgramHeap::contains(object)) check_heap(object, bytes, kind, 0);
+  }
+
   // For the running task, or before main():
   /// @return  null: there is no room for so much
   void* allocate(std::size_t bytes, std::size_t alignment, const void* caller) noexcept;
@@ -78,9 +84,11 @@ class ProgramMemory {
   /// With the byte in it: "counter[4]", if it has more than those that are accessed.
   [[nodiscard]] std::string place(const Operation& operation) const;
   [[nodiscard]] std::string name(const ProgramHeap::Block& block) const;
-  /// Of an object of several bytes that begins at the address: "ledger_lock", "queue+40", "heap.main-3+16"; empty if it lies nowhere
-  /// that has a name.
-  [[nodiscard]] std::string object_name(const volatile void* address) const;
+  /// Of a synchronisation object: "ledger_lock", "queue+40", "heap.main-3+16"; where it lies nowhere that has a name, "mutex-2".
+  /// @param kind    "mutex"
+  /// @param number  which of its kind
+  [[nodiscard]] std::string object_name(const volatile void* address, std::string_view kind,
+                                        std::size_t number) const;
 
  private:
   void check_heap(const volatile void* address, std::size_t bytes, OperationKind kind,

@@ -34,6 +34,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
       static_cast<void>(new std::function<void()>(std::move(task.body)));
     task.body = nullptr;
     task.thread_local_destructors.clear();
+    task.cleanup_buffers.clear();
   }
   tasks_count_ = 0;
   unfinished_count_ = 0;
@@ -93,6 +94,8 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.repeats.reset();
   task.body = std::move(body);
   task.result = nullptr;
+  task.body_frame = nullptr;
+  task.traits = {};
   task.storage->reset();
   if (decides_apart_) task.storage->clean_stack_below(task.storage->stack_top(), cleaned_at_begin);
   task.context.prepare(task.storage->stack_top(), task.storage->thread_pointer(), &run_task, &task);
@@ -137,28 +140,55 @@ void Scheduler::run() {
   describe_failure();
 }
 
+namespace {
+
+/// An exception that leaves the part ends the execution.
+void run_part_of(Task& self, void (*part)(Task&)) noexcept {
+  try {
+    part(self);
+  } catch (const std::exception& exception) {
+    const GhostScope ghost;
+    self.world->scheduler().fail(OutcomeKind::crash, fmt::format("{}: nobody caught the exception \"{}\"",
+                                                                 self.name, exception.what()));
+  } catch (...) {
+    const GhostScope ghost;
+    self.world->scheduler().fail(OutcomeKind::crash,
+                                 fmt::format("{}: nobody caught an exception of an unknown type", self.name));
+  }
+}
+
+}  // namespace
+
 void Scheduler::run_task(void* argument) noexcept {
   Task& self = *static_cast<Task*>(argument);
   TaskStorage::finish_set_up_of_current();
   current_task = &self;
-  Scheduler& scheduler = self.world->scheduler();
-  try {
-    self.body();
-    while (!self.thread_local_destructors.empty()) {
-      const auto last = self.thread_local_destructors.back();
-      self.thread_local_destructors.pop_back();
-      last.destroy(last.object);
-    }
-  } catch (const std::exception& exception) {
-    const GhostScope ghost;
-    scheduler.fail(OutcomeKind::crash,
-                   fmt::format("{}: nobody caught the exception \"{}\"", self.name, exception.what()));
-  } catch (...) {
-    const GhostScope ghost;
-    scheduler.fail(OutcomeKind::crash,
-                   fmt::format("{}: nobody caught an exception of an unknown type", self.name));
+  run_part_of(self, &run_body);
+  end_running();
+}
+
+// A frame of its own, which pthread_exit() can tell from those of the body: all of these lie below it.
+[[gnu::noinline]] void Scheduler::run_body(Task& self) {
+  self.body_frame = __builtin_frame_address(0);
+  self.body();
+  asm volatile("" ::: "memory");  // or the call of the body would be a jump, and this frame gone
+}
+
+void Scheduler::run_destructors(Task& self) {
+  while (!self.thread_local_destructors.empty()) {
+    const auto last = self.thread_local_destructors.back();
+    self.thread_local_destructors.pop_back();
+    last.destroy(last.object);
   }
-  scheduler.finish_running();
+  self.world->thread_specific().destroy_values(self);  // last, as with glibc
+}
+
+void Scheduler::end_running() noexcept {
+  Task& self = *current_task;
+  self.body_frame = nullptr;
+  run_part_of(self, &run_destructors);
+  self.world->scheduler().finish_running();
+  LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
 void Scheduler::finish_running() noexcept {
@@ -173,7 +203,6 @@ void Scheduler::finish_running() noexcept {
   world_.mutexes().owner_died(self.id);
   wake(World::join_key(self.id), tasks_max);
   leave(self);
-  LTSIM_UNREACHABLE("a finished task was resumed");
 }
 
 inline bool Scheduler::gives_way(Task& task, Operation operation) noexcept {
@@ -339,7 +368,8 @@ void Scheduler::fail_described(OutcomeKind kind, std::function<std::string()> de
 }
 
 void Scheduler::describe_failure() {
-  if (const auto describe = std::exchange(describe_outcome_, nullptr); describe) outcome_.message = describe();
+  if (const auto describe = std::exchange(describe_outcome_, nullptr); describe)
+    outcome_.message = describe();
 }
 
 void Scheduler::abandon() noexcept {

@@ -114,6 +114,9 @@ class Scheduler {
   /// @return tasks woken
   std::size_t wake(WaitKey key, std::size_t count_max) noexcept;
 
+  /// The running task, of whose body nothing is left to run, ends, with the destructors of its thread-locals and keys.
+  [[noreturn]] static void end_running() noexcept;
+
   /// From now on, in this execution, World::check_step() is told each step.
   void check_steps() noexcept { steps_are_checked_ = true; }
 
@@ -182,6 +185,8 @@ class Scheduler {
   static constexpr std::size_t cleaned_at_each_stop = std::size_t{2} * 1024;
   void set_name(Task& task, ProcessId process, std::string_view name);
   static void run_task(void* task) noexcept;
+  static void run_body(Task& self);
+  static void run_destructors(Task& self);
   void finish_running() noexcept;
   void describe_failure();
   /// Goes from the running task, which will not run again, to the next, or back to run().

@@ -69,6 +69,13 @@ void Scheduler::add_state(StateHash& hash) const noexcept {
       hash.add(reinterpret_cast<std::uintptr_t>(destroy));
       hash.add_word(reinterpret_cast<std::uintptr_t>(object));
     }
+    hash.add(task.cleanup_buffers.size());
+    for (const void* const buffer : task.cleanup_buffers)
+      hash.add_word(reinterpret_cast<std::uintptr_t>(buffer));
+    hash.add_memory(task.traits.name.data(), task.traits.name.size());
+    hash.add(static_cast<std::uint64_t>(task.traits.cancel_state) << 32U |
+             static_cast<std::uint64_t>(task.traits.cancel_type));
+    hash.add(task.traits.processors);
     hash.add_memory(&task.body, sizeof task.body);
     const auto registers = task.context.registers();
     hash.add_memory(registers.data(), registers.size());

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/world/object_key.hpp"
 #include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/world.hpp"
@@ -92,8 +93,7 @@ int Semaphores::init(sem_t* handle, bool shared, unsigned value) noexcept {
 std::string Semaphores::name_by_place(const sem_t* handle) const {
   const bool begins_a_segment =
       Segments::contains(handle) && Segments::offset_in_segment(Segments::place_of(handle)) == 0;
-  if (std::string name = world_.program_memory().object_name(handle); !name.empty()) return name;
-  if (!begins_a_segment) return fmt::format("semaphore-{}", count_ + 1);
+  if (!begins_a_segment) return world_.program_memory().object_name(handle, "semaphore", count_ + 1);
   return std::string{world_.objects().object_name(world_.segments().segment_at(Segments::place_of(handle)))};
 }
 
@@ -243,13 +243,12 @@ Semaphores::Semaphore& Semaphores::resolve(sem_t* handle, OperationKind kind) no
 }
 
 Semaphores::Semaphore& Semaphores::arrive_at(sem_t* handle, OperationKind kind) noexcept {
-  world_.scheduler().point(operation_on(kind, resolve(handle, kind).object));
+  world_.point_at(handle, operation_on(kind, resolve(handle, kind).object));
   return resolve(handle, kind);
 }
 
 WaitKey Semaphores::key_of(const Semaphore& semaphore) noexcept {
-  const std::uint64_t process = semaphore.shared ? 0 : current_task->process + 1U;
-  return std::uint64_t{1} << 62U | process << 32U | semaphore.object;
+  return object_key(semaphore.object, semaphore.shared);
 }
 
 void Semaphores::add_state(StateHash& hash) const noexcept {

@@ -1,6 +1,7 @@
 // A simulated thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -67,6 +68,19 @@ struct Task {
     void* object;
   };
   std::vector<ThreadLocalDestructor> thread_local_destructors;
+  const void* body_frame =
+      nullptr;  ///< while its body runs: the frame that called it; there pthread_exit() stops unwinding
+  std::vector<void*>
+      cleanup_buffers;  ///< __pthread_unwind_buf_t of pthread_cleanup_push(3) in C, the innermost last
+
+  /// What a thread can be asked for and nothing else depends on.
+  struct Traits {
+    std::array<char, 16> name{};   ///< pthread_setname_np(3); empty: its process's
+    int cancel_state = 0;          ///< PTHREAD_CANCEL_ENABLE
+    int cancel_type = 0;           ///< PTHREAD_CANCEL_DEFERRED
+    std::uint64_t processors = 0;  ///< on which it may run, a bit each; 0: on all
+  };
+  Traits traits;
 
   Context context;
   std::unique_ptr<TaskStorage> storage;

@@ -108,6 +108,9 @@ void World::end_execution() noexcept {
     return;
   }
   std::string held = mutexes_.held_at_end();
+  for (std::string& more : std::array{rwlocks_.held_at_end(), spin_locks_.held_at_end()}) {
+    if (!more.empty()) held += (held.empty() ? "" : "; ") + more;
+  }
   if (!held.empty()) scheduler_.fail(OutcomeKind::leak, std::move(held));
 }
 
@@ -181,6 +184,12 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   if (default_memory_ == Memory::c11) set_memory(Memory::c11);
   semaphores_.reset();
   mutexes_.reset();
+  rwlocks_.reset();
+  spin_locks_.reset();
+  barriers_.reset();
+  static_guards_.reset();
+  thread_specific_.reset();
+  random_numbers_.reset();
   faults_.reset();
   damages_.reset();
   fetches_.reset();
@@ -193,6 +202,12 @@ void World::add_state(StateHash& hash) const noexcept {
   segments_.add_state(hash);
   semaphores_.add_state(hash);
   mutexes_.add_state(hash);
+  rwlocks_.add_state(hash);
+  spin_locks_.add_state(hash);
+  barriers_.add_state(hash);
+  static_guards_.add_state(hash);
+  thread_specific_.add_state(hash);
+  random_numbers_.add_state(hash);
   faults_.add_state(hash);
   damages_.add_state(hash);
   fetches_.add_state(hash);

@@ -29,15 +29,21 @@
 #include "sim_clock/check/single_fetch.hpp"
 #include "sim_clock/check/written_first.hpp"
 #include "sim_clock/clock/deadline.hpp"
+#include "sim_clock/world/barriers.hpp"
 #include "sim_clock/world/damages.hpp"
 #include "sim_clock/world/faults.hpp"
 #include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
 #include "sim_clock/world/object_names.hpp"
 #include "sim_clock/world/program_memory.hpp"
+#include "sim_clock/world/random_numbers.hpp"
+#include "sim_clock/world/rwlocks.hpp"
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/semaphores.hpp"
+#include "sim_clock/world/spin_locks.hpp"
+#include "sim_clock/world/static_guards.hpp"
+#include "sim_clock/world/thread_specific.hpp"
 #include "sim_clock/world/threads.hpp"
 #include "sim_clock/world/weak_memory.hpp"
 #include "sim_clock/world/whole_state.hpp"
@@ -291,6 +297,16 @@ class World {
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
+  [[nodiscard]] Rwlocks& rwlocks() noexcept { return rwlocks_; }
+  [[nodiscard]] const Rwlocks& rwlocks() const noexcept { return rwlocks_; }
+  [[nodiscard]] SpinLocks& spin_locks() noexcept { return spin_locks_; }
+  [[nodiscard]] const SpinLocks& spin_locks() const noexcept { return spin_locks_; }
+  [[nodiscard]] Barriers& barriers() noexcept { return barriers_; }
+  [[nodiscard]] const Barriers& barriers() const noexcept { return barriers_; }
+  [[nodiscard]] StaticGuards& static_guards() noexcept { return static_guards_; }
+  [[nodiscard]] const StaticGuards& static_guards() const noexcept { return static_guards_; }
+  [[nodiscard]] ThreadSpecific& thread_specific() noexcept { return thread_specific_; }
+  [[nodiscard]] RandomNumbers& random_numbers() noexcept { return random_numbers_; }
   /// For what the scenario has declared: the running task performs `operation` next.
   void check_step(const Task& task, const Operation& operation) noexcept {
     fetches_.performs(task, operation);
@@ -324,6 +340,15 @@ class World {
   [[nodiscard]] unsigned incarnation(ProcessId id) const noexcept { return processes_[id]->incarnation(); }
 
   [[nodiscard]] const std::function<void(int, const void*)>& exit() const noexcept { return exit_; }
+
+  /// Scheduling point before `operation` of the running task on a synchronisation object. Ends the execution as a crash if that lies in
+  /// memory that was freed.
+  template <typename Object>
+  void point_at(const Object* object, const Operation& operation) noexcept {
+    if (ProgramMemory::is_on()) program_memory_.check_object(object, sizeof *object, operation.kind);
+    scheduler_.point(operation);
+    if (ProgramMemory::is_on()) program_memory_.check_object(object, sizeof *object, operation.kind);
+  }
 
   /// The code under test called something that this world does not simulate. Ends the execution.
   void unsupported(std::string what);
@@ -370,6 +395,12 @@ class World {
   SingleFetch fetches_{*this};
   WrittenFirst written_first_{*this};
   WholeState whole_state_{*this};
+  Rwlocks rwlocks_{*this};
+  SpinLocks spin_locks_{*this};
+  Barriers barriers_{*this};
+  StaticGuards static_guards_{*this};
+  ThreadSpecific thread_specific_;
+  RandomNumbers random_numbers_;
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;

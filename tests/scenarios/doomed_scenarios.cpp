@@ -51,10 +51,10 @@ SCENARIO("doomed/terminates", "the machine is shut down after 300 executions, in
   some_steps(world);
 }
 
-SCENARIO("doomed/calls-rand", "what is not simulated is called after a property has been broken") {
+SCENARIO("doomed/calls-fork", "what is not simulated is called after a property has been broken") {
   const std::size_t answer = world.choose("what", 200);
   world.process("p").start("main", [answer] {
-    if (answer == 7) static_cast<void>(rand());
+    if (answer == 7) static_cast<void>(fork());
   });
   world.run();
   world.require(answer % 2 != 0, "even");

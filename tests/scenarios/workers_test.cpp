@@ -117,13 +117,13 @@ TEST_F(WorkersTest, an_interruption_ends_the_scenarios_that_were_to_come_as_well
 }
 
 TEST_F(WorkersTest, what_is_not_simulated_exits_with_3_but_not_before_the_failures_found_are_told) {
-  const Result result = doomed("calls-rand --keep-going --json report.json");
+  const Result result = doomed("calls-fork --keep-going --json report.json");
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_TRUE(contains(result, "invariant: even")) << result.output;
-  EXPECT_TRUE(contains(result, "ltsim: p/main called rand")) << result.output;
+  EXPECT_TRUE(contains(result, "ltsim: p/main called fork")) << result.output;
   const auto report = timeless_report();
   EXPECT_EQ(report.at("failures").size(), 1U);
-  EXPECT_NE(report.at("error").get<std::string>().find("rand"), std::string::npos);
+  EXPECT_NE(report.at("error").get<std::string>().find("fork"), std::string::npos);
 }
 
 TEST_F(WorkersTest, a_failure_is_told_in_full_where_its_schedule_cannot_be_written) {

@@ -1,6 +1,7 @@
 // The reduction of the exhaustive search against the search without it: both come to the same results of a program.
 #include "sim_clock/explore/exhaustive_strategy.hpp"
 
+#include <pthread.h>
 #include <semaphore.h>
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <set>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,8 +43,15 @@ enum class Step : std::uint8_t {
   join_a_thread,
   poll,
   spin,
+  read_section,
+  write_section,
+  try_read,
+  timed_write,
+  spin_section,
+  meet,
+  try_to_join,
 };
-constexpr std::uint32_t steps_count = 17;
+constexpr std::uint32_t steps_count = 24;
 
 bool is_of_semaphore(Step step) noexcept { return step >= Step::post && step <= Step::timed_wait; }
 
@@ -81,6 +90,14 @@ class ExhaustiveStrategyTest : public WorldTest {
     std::array<std::mutex, 2> mutexes;
     std::condition_variable condition;
     bool notified = false;
+    std::shared_timed_mutex rwlock;
+    pthread_spinlock_t spin_lock;
+    pthread_barrier_t barrier;
+
+    Things() {
+      pthread_spin_init(&spin_lock, PTHREAD_PROCESS_PRIVATE);
+      pthread_barrier_init(&barrier, nullptr, 2);
+    }
   };
 
   static void run_task(const TaskPlan& plan, Things& things, std::vector<std::uint32_t>& seen) {
@@ -171,6 +188,54 @@ class ExhaustiveStrategyTest : public WorldTest {
             std::this_thread::yield();
           seen.push_back(word.load());
           break;
+        case Step::read_section: {
+          const std::shared_lock lock{things.rwlock};
+          seen.push_back(word.load());
+          seen.push_back(things.words[1 - number % 2].load());
+          break;
+        }
+        case Step::write_section: {
+          const std::unique_lock lock{things.rwlock};
+          things.words[0].store(20 + number);
+          things.words[1].store(20 + number);
+          break;
+        }
+        case Step::try_read: {
+          const std::shared_lock lock{things.rwlock, std::try_to_lock};
+          seen.push_back(lock.owns_lock() ? 1 : 0);
+          break;
+        }
+        case Step::timed_write: {
+          const std::unique_lock lock{things.rwlock, 1ms * (1 + number)};
+          seen.push_back(lock.owns_lock() ? 1 : 0);
+          if (lock.owns_lock() && number % 2 == 0) std::this_thread::sleep_for(2ms);
+          break;
+        }
+        case Step::spin_section:
+          if (number % 2 == 0) {
+            pthread_spin_lock(&things.spin_lock);
+          } else if (pthread_spin_trylock(&things.spin_lock) != 0) {
+            seen.push_back(0);
+            break;
+          }
+          seen.push_back(word.fetch_add(3));
+          pthread_spin_unlock(&things.spin_lock);
+          break;
+        case Step::meet:
+          seen.push_back(pthread_barrier_wait(&things.barrier) == PTHREAD_BARRIER_SERIAL_THREAD ? 1 : 0);
+          break;
+        case Step::try_to_join: {
+          pthread_t thread{};
+          const auto add = [](void* to) -> void* {
+            static_cast<std::atomic<std::uint32_t>*>(to)->fetch_add(7);
+            return nullptr;
+          };
+          pthread_create(&thread, nullptr, add, &word);
+          const bool joined = pthread_tryjoin_np(thread, nullptr) == 0;
+          seen.push_back(joined ? 1 : 0);
+          if (!joined) pthread_join(thread, nullptr);
+          break;
+        }
         case Step::join_a_thread: {
           std::thread thread{[&] { seen.push_back(word.fetch_add(7)); }};
           thread.join();

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <memory>
@@ -170,8 +171,8 @@ TEST_F(ExplorerTest, names_with_blanks_and_questions_of_tasks_survive_the_way_th
 }
 
 TEST_F(ExplorerTest, a_call_that_is_not_simulated_stops_the_exploration_and_is_named) {
-  const Scenario scenario{"demo/rand", "", [](World& world) {
-                            world.process("p").start("main", [] { static_cast<void>(rand()); });
+  const Scenario scenario{"demo/fork", "", [](World& world) {
+                            world.process("p").start("main", [] { static_cast<void>(fork()); });
                             world.run();
                           }};
   RandomStrategy strategy;
@@ -180,7 +181,7 @@ TEST_F(ExplorerTest, a_call_that_is_not_simulated_stops_the_exploration_and_is_n
         try {
           static_cast<void>(Explorer{world()}.explore(scenario, strategy, at_most(100)));
         } catch (const Explorer::NotSimulable& error) {
-          EXPECT_NE(error.message.find("rand"), std::string::npos) << error.message;
+          EXPECT_NE(error.message.find("fork"), std::string::npos) << error.message;
           throw;
         }
       },
