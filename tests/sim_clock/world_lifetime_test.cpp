@@ -195,6 +195,22 @@ TEST_F(LifetimeTest, random_bytes_differ_within_an_execution_and_are_the_same_in
   EXPECT_EQ(drawn[0], drawn[1]);
 }
 
+TEST_F(LifetimeTest, random_bytes_of_a_process_do_not_depend_on_how_often_others_draw) {
+  const auto drawn_after = [](unsigned others) {
+    std::uint64_t drawn = 0;
+    EXPECT_EQ(run([&](World& world) {
+                world.process("others").start("main", [others] {
+                  std::uint64_t bytes = 0;
+                  for (unsigned i = 0; i < others; ++i) getrandom(&bytes, sizeof bytes, 0);
+                });
+                world.process("p").start("main", [&drawn] { getrandom(&drawn, sizeof drawn, 0); });
+              }),
+              Outcome{});
+    return drawn;
+  };
+  EXPECT_EQ(drawn_after(0), drawn_after(2));
+}
+
 TEST_F(LifetimeTest, a_signal_that_asks_to_stop_is_no_step_of_the_task_that_it_interrupts) {
   const InterruptGuard guard;
   const long own = getpid();
