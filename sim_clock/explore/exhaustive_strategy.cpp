@@ -171,7 +171,7 @@ TaskBits ExhaustiveStrategy::visit_state(std::size_t runner, TaskBits asleep) no
   if (bounds_.silences) {
     hash.add(silences_);
     hash.add(silent_);
-    hash.add(silence_steps_ << 1U | (clock_was_used_ ? 1U : 0U));
+    if (silent_ != 0) hash.add(silence_steps_ << 1U | (clock_was_used_ ? 1U : 0U));
   }
   return states_.visit(hash.value(), asleep);
 }

@@ -86,7 +86,7 @@ extern "C" int get_nprocs() noexcept {
 // asks World::choose().
 extern "C" ssize_t getrandom(void* buffer, std::size_t bytes, unsigned flags) {
   if (current_task == nullptr) return LTSIM_NEXT(getrandom)(buffer, bytes, flags);
-  ltsim::RandomGenerator generator{current_task->world->next_random_draw()};
+  ltsim::RandomGenerator generator{current_task->world->next_random_draw(current_task->process)};
   for (std::size_t i = 0; i < bytes; ++i)
     static_cast<unsigned char*>(buffer)[i] = static_cast<unsigned char>(generator.next());
   return static_cast<ssize_t>(bytes);

@@ -26,6 +26,9 @@ class Heap {
     std::size_t bytes = 0;  // >= 1
     std::uint64_t name = 0;
     bool is_freed = false;  // and nothing else lies there yet: an address in it means nothing
+
+    /// tasks_max: none.
+    [[nodiscard]] std::size_t allocated_by() const noexcept { return name >> 32U; }
   };
 
   /// Whether blocks are entered.

@@ -9,6 +9,7 @@
 #include "sim_clock/check/no_progress.hpp"
 #include "sim_clock/check/self_check.hpp"
 #include "sim_clock/world/same_name.hpp"
+#include "sim_clock/world/wipe_stack.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -79,6 +80,8 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.id = static_cast<TaskId>(tasks_count_++);
   task.process = process;
   task.timed_out = false;
+  task.stands_at = {};
+  task.is_held_up_at_point = false;
   task.detached = false;
   task.joined = false;
   pending_[task.id] = Operation{.kind = OperationKind::thread_start};
@@ -225,7 +228,7 @@ inline bool Scheduler::gives_way(Task& task, Operation operation) noexcept {
   return operation.kind == OperationKind::yield || task.looks_count >= looks_before_giving_way;
 }
 
-void Scheduler::point(Operation operation) noexcept {
+[[gnu::always_inline]] inline void Scheduler::pass_point(Operation operation) noexcept {
   Task& self = *running_;
   // What follows looks at the copy: a parameter with an address would be written to the stack and read back at once.
   Operation& pending = pending_[self.id];
@@ -274,7 +277,23 @@ void Scheduler::point(Operation operation) noexcept {
     world_.check_step(self, pending);
 }
 
-Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
+void Scheduler::point(Operation operation) noexcept {
+  if (!decides_apart_) [[likely]]
+    return pass_point(operation);
+  struct Call {
+    Scheduler& scheduler;
+    const Operation& operation;
+  } call{*this, operation};
+  const auto pass = [](void* of) noexcept -> std::uint64_t {
+    static_cast<Call*>(of)->scheduler.pass_point(static_cast<Call*>(of)->operation);
+    return 0;
+  };
+  ltsim_keep_registers_and_call(&running_->stands_at, pass, &call);
+  wipe_stack<cleaned_after_each_stop>();
+}
+
+[[gnu::always_inline]] inline Scheduler::Wake Scheduler::block_running(WaitKey key,
+                                                                       Deadline deadline) noexcept {
   Task& self = *running_;
   self.state = Task::State::blocked;
   self.wait_key = key;
@@ -295,6 +314,23 @@ Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
   under_way_[self.id / 64] &= ~bit;
   if (strategy_follows_steps_) strategy_->resumes(self.id, pending_[self.id]);
   return self.timed_out ? Wake::timed_out : Wake::signalled;
+}
+
+Scheduler::Wake Scheduler::block(WaitKey key, Deadline deadline) noexcept {
+  if (!decides_apart_) [[likely]]
+    return block_running(key, deadline);
+  struct Call {
+    Scheduler& scheduler;
+    WaitKey key;
+    Deadline deadline;
+  } call{*this, key, deadline};
+  const auto block = [](void* of) noexcept -> std::uint64_t {
+    const Call& it = *static_cast<Call*>(of);
+    return static_cast<std::uint64_t>(it.scheduler.block_running(it.key, it.deadline));
+  };
+  const auto wake = static_cast<Wake>(ltsim_keep_registers_and_call(&running_->stands_at, block, &call));
+  wipe_stack<cleaned_after_each_stop>();
+  return wake;
 }
 
 std::size_t Scheduler::wake(WaitKey key, std::size_t count_max) noexcept {
@@ -455,8 +491,10 @@ void Scheduler::choose_slow_moment() noexcept {
   make_unrunnable(self);
   clock_.arm(clock_.now() + moment.duration, self.id);
   if (listener_ != nullptr) listener_->held_up(self, moment.duration);
+  self.is_held_up_at_point = true;
   Task* const other = next_after_stop();
   if (other != &self) switch_to(*other);
+  self.is_held_up_at_point = false;
   if (listener_ != nullptr) listener_->goes_on(self);
 }
 

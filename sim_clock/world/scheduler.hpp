@@ -179,10 +179,13 @@ class Scheduler {
  private:
   /// The strategy is asked while all tasks stand still; the one that it has chosen finds that the choice fell on it.
   TaskId decide_apart() noexcept;
+  void pass_point(Operation operation) noexcept;
+  Wake block_running(WaitKey key, Deadline deadline) noexcept;
   static void run_decider(void* scheduler) noexcept;
   // Bytes of a task's stack: most of those that its last life used, and most that one step uses.
   static constexpr std::size_t cleaned_at_begin = std::size_t{16} * 1024;
   static constexpr std::size_t cleaned_at_each_stop = std::size_t{2} * 1024;
+  static constexpr std::size_t cleaned_after_each_stop = std::size_t{4} * 1024;
   void set_name(Task& task, ProcessId process, std::string_view name);
   static void run_task(void* task) noexcept;
   static void run_body(Task& self);

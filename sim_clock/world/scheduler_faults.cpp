@@ -50,8 +50,10 @@ void Scheduler::stall_process(ProcessId process, SimTime duration) noexcept {
 void Scheduler::wait_for_processor() noexcept {
   Task& self = *running_;
   if (self.state != Task::State::stalled) return;
+  self.is_held_up_at_point = true;
   Task* const other = next_after_stop();
   if (other != &self) switch_to(*other);
+  self.is_held_up_at_point = false;
 }
 
 void Scheduler::leave_killed() noexcept {

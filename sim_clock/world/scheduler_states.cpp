@@ -49,7 +49,10 @@ void Scheduler::add_state(StateHash& hash) const noexcept {
   hash.add(std::uint64_t{time_has_mattered()} << 32U | tasks_count_);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     const Task& task = *tasks_[i];
-    hash.add(static_cast<std::uint64_t>(task.state) | std::uint64_t{task.timed_out} << 8U |
+    const bool is_under_way = (under_way_[i / 64] >> i % 64 & 1U) != 0;
+    // How block() ended is asked as soon as the task goes on, and never again.
+    hash.add(static_cast<std::uint64_t>(task.state) | std::uint64_t{task.timed_out && is_under_way} << 8U |
+             std::uint64_t{is_under_way} << 11U | std::uint64_t{task.is_held_up_at_point} << 12U |
              std::uint64_t{task.detached} << 9U | std::uint64_t{task.joined} << 10U);
     hash.add_word(reinterpret_cast<std::uintptr_t>(task.result));
     if (task.state == Task::State::finished || task.state == Task::State::killed) continue;
@@ -77,10 +80,15 @@ void Scheduler::add_state(StateHash& hash) const noexcept {
              static_cast<std::uint64_t>(task.traits.cancel_type));
     hash.add(task.traits.processors);
     hash.add_memory(&task.body, sizeof task.body);
-    const auto registers = task.context.registers();
-    hash.add_memory(registers.data(), registers.size());
     const auto* const top = static_cast<const std::byte*>(task.storage->stack_top());
-    const auto* const stack = static_cast<const std::byte*>(task.context.stack_pointer());
+    const auto* stack = static_cast<const std::byte*>(task.stands_at.stack_pointer);
+    if (stack != nullptr) {
+      hash.add_memory(&task.stands_at, sizeof task.stands_at);
+    } else {  // it has not begun
+      const auto registers = task.context.registers();
+      hash.add_memory(registers.data(), registers.size());
+      stack = static_cast<const std::byte*>(task.context.stack_pointer());
+    }
     hash.add_memory(stack, static_cast<std::size_t>(top - stack));
     task.storage->add_state(hash);
   }

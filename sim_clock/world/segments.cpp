@@ -398,9 +398,10 @@ void Segments::add_state(StateHash& hash) const noexcept {
     if (window.mapped)
       hash.add(i << 33U | std::uint64_t{window.bytes} << 1U | std::uint64_t{window.writable});
   }
-  hash.add(descriptors_.size());
-  for (const Descriptor& descriptor : descriptors_) {
-    hash.add(std::uint64_t{descriptor.segment} << 16U | std::uint64_t{descriptor.process} << 2U |
+  for (std::size_t i = 0; i < descriptors_.size(); ++i) {
+    const Descriptor& descriptor = descriptors_[i];
+    if (!descriptor.open) continue;
+    hash.add(i << 32U | std::uint64_t{descriptor.segment} << 16U | std::uint64_t{descriptor.process} << 2U |
              std::uint64_t{descriptor.open} << 1U | std::uint64_t{descriptor.writable});
   }
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "sim_clock/world/heap.hpp"
 
@@ -19,7 +20,15 @@ class StateHash {
   /// The bits in which the numbers of executions differ are the lowest; what is above tells them from other words.
   static constexpr unsigned number_bits = 40;
 
-  explicit StateHash(std::uint64_t execution_number) noexcept : execution_number_(execution_number) {
+  /// Which blocks of the heap (Heap::blocks()) words that went in have led to, by index.
+  struct Reached {
+    std::vector<bool> is_reached;
+    std::vector<std::size_t> to_look_at;  ///< for who follows them
+  };
+
+  /// @param reached  null: nobody asks
+  explicit StateHash(std::uint64_t execution_number, Reached* reached = nullptr) noexcept
+      : execution_number_(execution_number), reached_(reached) {
     if (Heap::is_listing() && !Heap::blocks().empty()) {
       heap_begin_ = Heap::blocks().front().begin;
       heap_bytes_ = Heap::blocks().back().begin + Heap::blocks().back().bytes - heap_begin_;
@@ -33,7 +42,10 @@ class StateHash {
     if (word - heap_begin_ <= heap_bytes_) [[unlikely]] {
       if (const Heap::Block* const block = Heap::find(word); block != nullptr) {
         add(block->is_freed ? freed_mark : block->name ^ heap_mark);
-        if (!block->is_freed) add(word - block->begin);
+        if (!block->is_freed) {
+          add(word - block->begin);
+          if (reached_ != nullptr) reach(static_cast<std::size_t>(block - Heap::blocks().data()));
+        }
         return;
       }
     }
@@ -57,6 +69,12 @@ class StateHash {
   [[nodiscard]] std::uint64_t value() const noexcept { return hash_ ^ hash_ >> 32U; }
 
  private:
+  void reach(std::size_t index) noexcept {
+    if (reached_->is_reached[index]) return;
+    reached_->is_reached[index] = true;
+    reached_->to_look_at.push_back(index);
+  }
+
   static constexpr std::uint64_t heap_mark = 0xb10c'0000'0000'0000U;
   static constexpr std::uint64_t freed_mark = 0xb10c'ffff'ffff'ffffU;
   static constexpr std::uint64_t this_execution = 0xe8ec'0000'0000'0001U;
@@ -64,6 +82,7 @@ class StateHash {
 
   std::uint64_t hash_ = 0;
   std::uint64_t execution_number_;
+  Reached* reached_;
   std::uintptr_t heap_begin_ = 0;
   std::uintptr_t heap_bytes_ = 0;
 };

@@ -11,6 +11,7 @@
 
 #include "sim_clock/clock/virtual_clock.hpp"
 #include "sim_clock/world/context.hpp"
+#include "sim_clock/world/kept_registers.hpp"
 #include "sim_clock/world/operation.hpp"
 #include "sim_clock/world/task_storage.hpp"
 
@@ -83,6 +84,10 @@ struct Task {
   Traits traits;
 
   Context context;
+  /// Where states are told apart, while it stands still: where the code under test, or what does its call, has come to a point or
+  /// has blocked.
+  KeptRegisters stands_at;
+  bool is_held_up_at_point = false;  ///< it stands at a point, and is not yet asked who goes on from there
   std::unique_ptr<TaskStorage> storage;
 };
 

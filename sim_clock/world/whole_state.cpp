@@ -67,24 +67,42 @@ void WholeState::end() noexcept {
 std::uint64_t WholeState::hash() {
   if (Heap::overflowed())
     world_.unsupported("states are to be told apart, and the heap has too many blocks for that");
-  StateHash hash{world_.execution_number()};
+  const auto all = Heap::blocks();
+  reached_.is_reached.assign(all.size(), false);
+  reached_.to_look_at.clear();
+  StateHash hash{world_.execution_number(), &reached_};
   // Where they lie does not matter, nor which lies before which.
   std::uint64_t blocks = 0;
-  for (const Heap::Block& block : Heap::blocks()) {
-    if (block.is_freed) continue;
-    StateHash of_block{world_.execution_number()};
+  const auto add_block = [&](const Heap::Block& block) {
+    StateHash of_block{world_.execution_number(), &reached_};
     of_block.add(block.name);
     of_block.add(block.bytes);
     of_block.add_memory(reinterpret_cast<const void*>(block.begin), block.bytes);
     blocks += of_block.value();
+  };
+  // What killed tasks have left only counts if somebody can still come to it.
+  for (const Heap::Block& block : all) {
+    if (!block.is_freed && !was_of_killed(block)) add_block(block);
   }
-  hash.add(blocks);
   world_.add_state(hash);
   const Scheduler& scheduler = world_.scheduler();
   const auto* const scenario_stack = static_cast<const std::byte*>(scheduler.main_stack_pointer());
   hash.add_memory(scenario_stack, stack_end_ - number_of(scenario_stack));
   add_variables(hash);
+  while (!reached_.to_look_at.empty()) {
+    const Heap::Block& block = all[reached_.to_look_at.back()];
+    reached_.to_look_at.pop_back();
+    if (was_of_killed(block)) add_block(block);
+  }
+  hash.add(blocks);
   return hash.value();
+}
+
+bool WholeState::was_of_killed(const Heap::Block& block) const noexcept {
+  const Scheduler& scheduler = world_.scheduler();
+  const std::size_t owner = block.allocated_by();
+  return owner < scheduler.tasks_count() &&
+         scheduler.task(static_cast<TaskId>(owner)).state == Task::State::killed;
 }
 
 void WholeState::add_variables(StateHash& hash) const noexcept {

@@ -8,11 +8,11 @@
 // memory, whose histories do not go in, nor for one processor (Prover refuses both).
 //
 // What does not go in: how many steps were taken, which decides nothing; what the race detector remembers, so a race that shows only
-// on one of two ways into the same state may go unseen; and which address the heap gives out next, so code that compares the address
-// of a freed block with that of another one in its place may go unseen.
+// on one of two ways into the same state may go unseen; and which address the heap, or which number the next descriptor, will have, so
+// code that compares those of what is gone with those of what came in its place may go unseen.
 //
-// Words that the code does not need any more stay on stacks and in registers. They make two states of one, never one of two. The
-// stack below a task that stands still is filled with zeros, so there are few.
+// Words that the code does not need any more make two states of one, never one of two. There are few: neither the simulator's own
+// frames go in (kept_registers.hpp), nor what a killed process has left on the heap and nobody can come to; stacks are cleaned below.
 #pragma once
 
 #include <cstddef>
@@ -53,12 +53,14 @@ class WholeState {
   void written_elsewhere(std::uintptr_t address) noexcept;
   void check_write(std::uintptr_t address) noexcept;
   void add_variables(StateHash& hash) const noexcept;
+  [[nodiscard]] bool was_of_killed(const Heap::Block& block) const noexcept;
 
   static inline WholeState* active_ = nullptr;
 
   World& world_;
   std::uintptr_t stack_end_ = 0;  // what lies on the stack from there on is none of the scenario's
   std::vector<std::byte> variables_at_first_;
+  StateHash::Reached reached_;
 };
 
 }  // namespace ltsim

@@ -40,6 +40,7 @@ void Process::died(std::optional<SimTime> restart_after) {
   if (!restart_after) return;
   ++incarnation_;
   threads_created_count_ = 0;
+  random_draws_count_ = 0;
   begin_ = world_.now() + *restart_after;
   const std::size_t tasks_before = world_.scheduler().tasks_count();
   for (const Start& start : starts_) {
@@ -55,6 +56,7 @@ void Process::died(std::optional<SimTime> restart_after) {
 
 void Process::reset() noexcept {
   threads_created_count_ = 0;
+  random_draws_count_ = 0;
   incarnation_ = 1;
   crashes_ = 0;
   begin_ = SimTime{0};
@@ -170,7 +172,6 @@ void World::set_input(std::vector<std::string> records) {
 
 void World::reset(Strategy& strategy, StepListener* listener) {
   execution_number_ = ++last_execution_number_;
-  random_draws_count_ = 0;
   wall_clock_ahead_ = wall_clock_epoch;
   exit_ = nullptr;
   output_.clear();
@@ -213,10 +214,10 @@ void World::add_state(StateHash& hash) const noexcept {
   fetches_.add_state(hash);
   written_first_.add_state(hash);
   hash.add(static_cast<std::uint64_t>(wall_clock_ahead_.count()));
-  hash.add(random_draws_count_);
   for (std::size_t i = 0; i < processes_count_; ++i) {
     const Process& process = *processes_[i];
     hash.add(process.threads_created_count_);
+    hash.add(process.random_draws_count_);
     hash.add(process.incarnation_);
     hash.add(process.crashes_);
     hash.add(static_cast<std::uint64_t>(process.begin_.count()));

@@ -99,6 +99,7 @@ class Process {
   ProcessId id_;
   std::string name_;
   unsigned threads_created_count_ = 0;  // in this execution and this life, as everything below
+  unsigned random_draws_count_ = 0;
   unsigned incarnation_ = 1;
   unsigned crashes_ = 0;
   SimTime begin_{0};           // of this life
@@ -328,8 +329,13 @@ class World {
   [[nodiscard]] static bool is_execution_number(std::uint64_t number) noexcept {
     return number >> execution_number_bits == execution_number_mark;
   }
-  /// Calls so far for random bytes: the next ones are others, in each execution the same.
-  [[nodiscard]] std::uint64_t next_random_draw() noexcept { return random_draws_count_++; }
+  /// A call of the process for random bytes: each of all calls gets others, in each execution the same. By life and number, so that
+  /// how often others have called makes no difference.
+  [[nodiscard]] std::uint64_t next_random_draw(ProcessId id) noexcept {
+    Process& process = *processes_[id];
+    return std::uint64_t{id} << 48U | std::uint64_t{process.incarnation_} << 32U |
+           process.random_draws_count_++;
+  }
   /// Number of the next thread that the process creates, from 1.
   [[nodiscard]] unsigned next_thread_number(ProcessId id) noexcept {
     return ++processes_[id]->threads_created_count_;
@@ -411,7 +417,6 @@ class World {
   std::function<void(int, const void*)> exit_;
   std::string output_;
   std::uint64_t execution_number_ = 0;
-  std::uint64_t random_draws_count_ = 0;
   SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock
 };
 

@@ -35,10 +35,14 @@ std::string_view to_string(Use use) noexcept {
 
 void AreaOwnership::enters(ltsim::TaskId task, Use use) {
   leaves(task);
+  // Who was killed has left.
+  for (std::size_t i = visits_.size(); i-- != 0;) {
+    if (world_.scheduler().task(visits_[i].task).state == ltsim::Task::State::killed) leaves(visits_[i].task);
+  }
   Visit visit{.task = task, .use = use};
   for (Visit& other : visits_) {
     const ltsim::Task& there = world_.scheduler().task(other.task);
-    if (there.state == ltsim::Task::State::killed || !conflict(use, other.use)) continue;
+    if (!conflict(use, other.use)) continue;
     visit.disturbed = other.disturbed = true;
     if (first_conflict_) continue;
     first_conflict_ = fmt::format("{} {} while {} {}", world_.scheduler().task(task).name, to_string(use),
@@ -49,7 +53,10 @@ void AreaOwnership::enters(ltsim::TaskId task, Use use) {
 
 void AreaOwnership::leaves(ltsim::TaskId task) noexcept {
   const auto visit = std::ranges::find(visits_, task, &Visit::task);
-  if (visit != visits_.end()) visits_.erase(visit);
+  if (visit == visits_.end()) return;
+  *visit = visits_.back();
+  visits_.back() = {};  // what is left over there would make two states of one
+  visits_.pop_back();
 }
 
 bool AreaOwnership::is_disturbed(ltsim::TaskId task) const noexcept {

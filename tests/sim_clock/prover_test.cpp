@@ -104,6 +104,33 @@ TEST_F(ProverTest, states_are_as_few_as_they_are) {
   EXPECT_LE(report.states, 6 * (steps + 1) * (steps + 1));
 }
 
+/// Nobody can come to the memory of a process that was killed: how far it was, does not make another state.
+TEST_F(ProverTest, what_a_killed_process_has_left_on_the_heap_is_no_state) {
+  constexpr std::uint32_t steps = 12;
+  const auto states = [](unsigned kills) {
+    const ProveReport report = prove(
+        [kills](World& of) {
+          Word word{0};
+          of.process("killed").start("main", [&] {
+            const auto progress = std::make_unique<std::vector<std::uint32_t>>(8, 0U);
+            for (std::uint32_t k = 0; k < steps; ++k) {
+              progress->front() = k;
+              static_cast<void>(word.load());
+            }
+          });
+          of.process("lives").start("main", [&] {
+            for (std::uint32_t k = 0; k < steps; ++k) static_cast<void>(word.load());
+          });
+          if (kills != 0) of.process("killed").may_crash({.times = kills, .restart_after = {}});
+          of.run();
+        },
+        by_states());
+    EXPECT_TRUE(report.complete);
+    return report.states;
+  };
+  EXPECT_LE(states(1), states(0) + 4 * (steps + 1));
+}
+
 TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_told_apart) {
   // Both tasks end in the same state whoever was first; only the check knows.
   const ProveReport report = prove(

@@ -5,10 +5,12 @@
 #include <semaphore.h>
 #include <sys/mman.h>
 #include <sys/random.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
@@ -16,6 +18,7 @@
 #include <string>
 #include <thread>
 
+#include "sim_clock/scenario/interrupt.hpp"
 #include "tests/sim_clock/world_fixture.hpp"
 
 namespace ltsim {
@@ -190,6 +193,41 @@ TEST_F(LifetimeTest, random_bytes_differ_within_an_execution_and_are_the_same_in
   }
   EXPECT_NE(drawn[0][0], drawn[0][1]);
   EXPECT_EQ(drawn[0], drawn[1]);
+}
+
+TEST_F(LifetimeTest, random_bytes_of_a_process_do_not_depend_on_how_often_others_draw) {
+  const auto drawn_after = [](unsigned others) {
+    std::uint64_t drawn = 0;
+    EXPECT_EQ(run([&](World& world) {
+                world.process("others").start("main", [others] {
+                  std::uint64_t bytes = 0;
+                  for (unsigned i = 0; i < others; ++i) getrandom(&bytes, sizeof bytes, 0);
+                });
+                world.process("p").start("main", [&drawn] { getrandom(&drawn, sizeof drawn, 0); });
+              }),
+              Outcome{});
+    return drawn;
+  };
+  EXPECT_EQ(drawn_after(0), drawn_after(2));
+}
+
+TEST_F(LifetimeTest, a_signal_that_asks_to_stop_is_no_step_of_the_task_that_it_interrupts) {
+  const InterruptGuard guard;
+  const long own = getpid();
+  std::uint64_t steps = 1;
+  EXPECT_EQ(
+      run([&](World& world) {
+        world.process("p").start("main", [&] {
+          const std::uint64_t before = world.scheduler().points();
+          // raise() is refused, and only a signal from outside is what is meant.
+          long result = SYS_kill;
+          asm volatile("syscall" : "+a"(result) : "D"(own), "S"(long{SIGTERM}) : "rcx", "r11", "memory");
+          steps = world.scheduler().points() - before;
+        });
+      }),
+      Outcome{});
+  EXPECT_EQ(InterruptGuard::signal(), SIGTERM);
+  EXPECT_EQ(steps, 0U);
 }
 
 TEST_F(LifetimeTest, an_execution_that_has_shown_enough_ends_where_it_stands_and_has_passed) {

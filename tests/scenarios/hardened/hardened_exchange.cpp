@@ -25,6 +25,7 @@ using protocol::ExchangeOutcome;
 namespace hardened = protocol::hardened;
 
 constexpr const char* segment = "handoff";
+constexpr ltsim::WaitKey news = ~ltsim::WaitKey{0} >> 16U;  // no address
 constexpr std::size_t payload_bytes_max = 16;
 constexpr auto time_to_spare = 1s;  // for each stage of a call
 
@@ -66,12 +67,11 @@ class HardenedSides {
       ask_with_time_to_spare(master);
     }
     if (kernels_to_come_ != 0) --kernels_to_come_;
+    tell_all();
   }
 
   void operate() {
-    do {
-      std::this_thread::sleep_for(50ms);  // the machine stays on for a while
-    } while (kernels_to_come_ != 0);
+    sleep_until([this] { return kernels_to_come_ == 0; });
     if (exchange_.lost_rings != 0) world_.finish();  // the ring of a stop could be lost, too
     stopped_ = true;
     stop_emulator();
@@ -93,11 +93,12 @@ class HardenedSides {
       if (!stopped_) {
         if (may_open_before_emulator()) meetings_.fetch_add(1, std::memory_order_release);
         emulator_is_up_ = true;
+        tell_all();
         handler.run();
         emulator_is_up_ = false;
       }
       handler_ = nullptr;
-      while (stops_under_way_ != 0) std::this_thread::sleep_for(1ms);
+      sleep_until([this] { return stops_under_way_ == 0; });
     }
   }
 
@@ -106,7 +107,7 @@ class HardenedSides {
  private:
   void wait_for_emulator() {
     do {
-      while (!emulator_is_up_ && kernels_to_come_ != 0) std::this_thread::sleep_for(1ms);
+      sleep_until([this] { return emulator_is_up_ || kernels_to_come_ == 0; });
       if (may_open_before_emulator()) meetings_.fetch_add(1, std::memory_order_acquire);
     } while (!emulator_is_up_ && kernels_to_come_ != 0);  // it may have stopped at that step
   }
@@ -116,6 +117,18 @@ class HardenedSides {
   [[nodiscard]] bool may_open_before_emulator() const {
     return exchange_.opens_together || exchange_.emulator_stops;
   }
+
+  /// Until somebody tells that it is so. Neither orders memory, as a lock, a semaphore or a futex would, nor looks at a clock.
+  template <class Condition>
+  void sleep_until(const Condition& is_so) {
+    while (!is_so()) {
+      world_.scheduler().point({.kind = ltsim::OperationKind::sleep});
+      if (!is_so()) world_.scheduler().block(news, ltsim::VirtualClock::never);
+    }
+  }
+
+  /// What the operator sees has changed.
+  void tell_all() { world_.scheduler().wake(news, ltsim::tasks_max); }
 
   /// @return false: it is over
   template <class Side>
@@ -130,6 +143,7 @@ class HardenedSides {
       }
       stopped_ = true;
       kernels_to_come_ = 0;
+      tell_all();
       world_.violated("I28, I29: a side cannot open the segment");
       return false;
     }
@@ -154,6 +168,7 @@ class HardenedSides {
     ++stops_under_way_;
     handler_->request_stop();
     --stops_under_way_;
+    tell_all();
   }
 
   /// Request n is so many bytes n: no part of one is a part of another, and two in a row differ in length.

@@ -30,10 +30,14 @@ HardenedMonitor::HardenedMonitor(ltsim::World& world, std::string_view master_pr
   constexpr std::size_t usual_requests = 8;
   exchanges_.reserve(usual_requests);
   world_.whenever_idle([this] { check_when_idle(); });
-  world_.whenever_held_up([this](ltsim::SimTime duration) { held_up_ += duration; });
+  world_.whenever_held_up([this](ltsim::SimTime duration) {
+    if (is_under_way()) held_up_ += duration;
+  });
 }
 
 void HardenedMonitor::submitted(std::span<const std::byte> request) noexcept {
+  // Its sender was killed.
+  if (is_under_way()) forget_what_the_end_needed(exchanges_.back());
   exchanges_.push_back({.request = Bytes(request.begin(), request.end()),
                         .answer = {},
                         .task = running().id,
@@ -133,6 +137,16 @@ void HardenedMonitor::ended(Outcome outcome) noexcept {
   if (++own.ended_count > 1)
     violated({"I18"}, [&] { return fmt::format("request {} ended twice", exchanges_.size()); });
   check_ended(own, outcome);
+  forget_what_the_end_needed(own);
+}
+
+bool HardenedMonitor::is_under_way() const noexcept {
+  return !exchanges_.empty() && exchanges_.back().ended_count == 0;
+}
+
+void HardenedMonitor::forget_what_the_end_needed(Exchange& exchange) noexcept {
+  exchange.has_time_to_spare = exchange.was_given_up = exchange.slave_has_changed = false;
+  exchange.crashes_before = 0;
 }
 
 void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
@@ -186,7 +200,7 @@ void HardenedMonitor::attached() noexcept {
   slave_ = &world_.process(running().process);
   slave_task_ = running().id;
   executing_ = none;
-  if (!exchanges_.empty() && exchanges_.back().ended_count == 0) exchanges_.back().slave_has_changed = true;
+  if (is_under_way()) exchanges_.back().slave_has_changed = true;
 }
 
 void HardenedMonitor::detaching() noexcept {

@@ -106,6 +106,9 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
     bool holds = false;
   };
 
+  [[nodiscard]] bool is_under_way() const noexcept;
+  /// So that states that differ in nothing else are the same for a proof.
+  static void forget_what_the_end_needed(Exchange& exchange) noexcept;
   void check_when_idle();
   void check_role(std::string_view what);
   void check_early(ltsim::SimTime full, std::string_view what);
