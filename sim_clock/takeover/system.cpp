@@ -118,7 +118,7 @@ extern "C" std::uint32_t arc4random() noexcept {
 extern "C" std::uint32_t arc4random_uniform(std::uint32_t bound) noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(arc4random_uniform)(bound);
   if (bound < 2) return 0;
-  return ltsim::RandomGenerator{current_task->world->next_random_draw()}.below(bound);
+  return ltsim::RandomGenerator{current_task->world->next_random_draw(current_task->process)}.below(bound);
 }
 
 extern "C" long syscall(long number, ...) noexcept {

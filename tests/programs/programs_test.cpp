@@ -1,7 +1,9 @@
 // Whole programs, built by ltsim-cc and ltsim-c++ and explored as a stranger does it: each bug is found, as the README of this folder
 // says that it shows, and its schedule fails again; the correct twin is silent.
 
-#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -68,7 +70,7 @@ constexpr Program programs[] = {
     {"start_gate", "deadlock"},
     {"static_local_counter", "data-race assertion"},
     {"stop_flag", "assertion"},
-    {"thread_key_destructor", "crash"},
+    {"thread_key_destructor", "data-race crash"},
     {"timed_lock_ignored", "assertion data-race exit"},
     {"torn_pair", "data-race"},
     {"torn_pair_checker", "assertion"},
@@ -83,17 +85,105 @@ constexpr Program programs[] = {
     {"wrong_lock", "data-race"},
 };
 
-class ProgramTest : public testing::TestWithParam<Program> {
+class ProgramsTest : public testing::Test {
  protected:
+  [[nodiscard]] Result shell(const std::string& line) const {
+    return test_support::run_in(folder_.path(), line);
+  }
   [[nodiscard]] Result ltsim(const std::string& arguments) const {
-    return test_support::run_in(folder_.path(), LTSIM_PROGRAM " " + arguments);
+    return shell(LTSIM_PROGRAM " " + arguments);
   }
   [[nodiscard]] static std::string path_of(std::string_view name) {
     return std::string{PROGRAMS_FOLDER "/"}.append(name);
   }
+  void write(const char* name, const std::string& text) const {
+    std::ofstream{folder_.path() / name} << text;
+  }
+  [[nodiscard]] std::string read(const char* name) const {
+    std::ifstream file{folder_.path() / name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+  [[nodiscard]] static bool contains(const Result& result, std::string_view text) {
+    return result.output.find(text) != std::string::npos;
+  }
 
   test_support::TemporaryFolder folder_;
 };
+
+class ProgramTest : public ProgramsTest, public testing::WithParamInterface<Program> {};
+
+TEST_F(ProgramsTest, run_as_ever_without_ltsim) {
+  EXPECT_EQ(shell(path_of("bank_transfer-corrected")).exit_code, 0);
+  EXPECT_EQ(shell(path_of("double_close-corrected")).exit_code, 0);
+}
+
+TEST_F(ProgramsTest, are_told_their_arguments_in_each_execution_and_in_a_replay) {
+  const std::string path = path_of("torn_pair_checker");
+  const Result found = ltsim("explore --executions 3000 -- " + path + " 7");
+  ASSERT_EQ(found.exit_code, 1) << found.output;
+  EXPECT_TRUE(contains(found, "program/thread-8")) << found.output;
+  EXPECT_NE(read("out/torn_pair_checker.schedule").find("program   \"" + path + "\"\nargument  \"7\"\n"),
+            std::string::npos);
+  const Result again = ltsim("replay out/torn_pair_checker.schedule");
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_TRUE(contains(again, "program/thread-8")) << again.output;
+}
+
+TEST_F(ProgramsTest, keep_what_the_failing_execution_has_written_and_that_of_no_other) {
+  const Result found = ltsim("explore --executions 10000 -- " + path_of("bank_transfer"));
+  ASSERT_EQ(found.exit_code, 1) << found.output;
+  const std::string output = read("out/bank_transfer.output");
+  EXPECT_NE(output, "");
+  EXPECT_EQ(output.find('\n'), output.size() - 1) << output;
+  EXPECT_FALSE(contains(found, output)) << found.output;
+  EXPECT_TRUE(contains(ltsim("replay out/bank_transfer.schedule"), "  output:\n" + output));
+}
+
+TEST_F(ProgramsTest, are_proved_as_scenarios_are) {
+  const Result whole = ltsim("prove -- " + path_of("atomic_two_steps-corrected"));
+  EXPECT_EQ(whole.exit_code, 0) << whole.output;
+  EXPECT_TRUE(contains(whole, "with any number of preemptions and no silence")) << whole.output;
+  EXPECT_EQ(ltsim("prove -- " + path_of("atomic_two_steps")).exit_code, 1);
+}
+
+TEST_F(ProgramsTest, give_the_same_report_for_the_same_seed) {
+  const std::string command =
+      "explore --executions 2000 --keep-going --seed 5 -- " + path_of("vector_push_back");
+  const Result once = ltsim(command);
+  EXPECT_EQ(once.exit_code, 1) << once.output;
+  EXPECT_EQ(once.output, ltsim(command).output);
+}
+
+TEST_F(ProgramsTest, are_refused_with_the_reason_where_they_cannot_be_looked_into) {
+  write("script", "#!/bin/sh\nexit 0\n");
+  write("empty", "");
+  const struct {
+    const char* arguments;
+    const char* reason;
+  } cases[] = {
+      {"explore --", "no program follows \"--\""},
+      {"explore -- ./none-such", "./none-such: No such file or directory"},
+      {"explore -- ./script", "./script: is no program: a script cannot be looked into"},
+      {"explore -- ./empty", "./empty: is no program"},
+      {"explore -- .", ".: is no program"},
+      {"explore -- /bin/true", "/bin/true: was not built with ltsim-cc or ltsim-c++"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    const Result result = ltsim(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_TRUE(contains(result, std::string{"ltsim: "} + reason)) << result.output;
+  }
+}
+
+TEST_F(ProgramsTest, are_not_compiled_where_they_could_not_be_looked_into) {
+  write("p.c", "int main(void) { return 0; }\n");
+  const Result is_static = shell(LTSIM_CC " -static p.c -o p");
+  EXPECT_EQ(is_static.exit_code, 2);
+  EXPECT_TRUE(contains(is_static, "ltsim-cc: -static: ")) << is_static.output;
+  const Result sanitizer = shell(LTSIM_CC " -fsanitize=address p.c -o p");
+  EXPECT_EQ(sanitizer.exit_code, 2);
+  EXPECT_TRUE(contains(sanitizer, "ltsim-cc: -fsanitize=address: ")) << sanitizer.output;
+}
 
 TEST_P(ProgramTest, shows_its_bug_and_shows_it_again) {
   const std::string name{GetParam().name};
