@@ -1,6 +1,8 @@
 // The program of the machine tool on its plant: functions and their feedback, tool changes, failures, restart.
 #include "emulator_models/programs/machine_tool_program.hpp"
 
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "tests/emulator_models/plants/machine_tool_rig.hpp"
@@ -308,6 +310,65 @@ TEST(MachineToolRestart, in_an_exchange_leaves_it_in_doubt_until_somebody_has_lo
   rig.select_tool(7);
   rig.execute(6);
   EXPECT_EQ(rig.alarm(), 32);
+}
+
+/// Whatever happens to its pulses, the magazine is no reason for a wrong tool: the change ends with the right one, or in
+/// alarm 22.
+struct MachineToolMagazine : ::testing::TestWithParam<int> {
+  void SetUp() override {
+    rig.switch_on();
+    rig.select_tool(start_tool);
+    rig.execute(6);
+    ASSERT_EQ(rig.d(222), start_tool);
+  }
+  /// Calls `disturb` when so much time has passed since the strobe.
+  void change_to(int tool, std::chrono::milliseconds at, const std::function<void()>& disturb) {
+    rig.select_tool(tool);
+    rig.give(6);
+    if (at > 0ms) rig.run_for(at);
+    disturb();
+    const SteadyTime begin = rig.now;
+    do rig.scan();
+    while (!rig.m(120) && rig.alarm() == 0 && rig.now - begin < 30s);
+    EXPECT_EQ(rig.alarm(), rig.m(120) ? 0 : 22);
+    EXPECT_EQ(rig.broken, std::set<std::string>{})
+        << rig.plant.changer().tool_in_spindle() << " for " << tool;
+  }
+  void lose_pulses_for(std::chrono::milliseconds duration) {
+    rig.plant.set_failure(MachineToolFailure::pocket_pulse_lost, true);
+    rig.run_for(duration);
+    rig.plant.set_failure(MachineToolFailure::pocket_pulse_lost, false);
+  }
+
+  static constexpr int start_tool = 2;
+  MachineToolRig rig{machine_tool_program()};
+  const std::chrono::milliseconds after{GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(after_millis, MachineToolMagazine, ::testing::Range(0, 1700, 50));
+
+TEST_P(MachineToolMagazine, counts_no_pulse_twice_that_was_gone_for_a_moment) {
+  change_to(5, after, [&] { lose_pulses_for(50ms); });
+}
+
+TEST_P(MachineToolMagazine, misses_no_pulse) {
+  change_to(5, after, [&] { lose_pulses_for(700ms); });
+}
+
+TEST_P(MachineToolMagazine, misses_no_pulse_while_it_starts_without_one) {
+  rig.plant.set_failure(MachineToolFailure::pocket_pulse_lost, true);
+  rig.run_for(800ms);
+  change_to(5, after, [&] { lose_pulses_for(10ms); });
+}
+
+struct MachineToolLateScan : MachineToolMagazine {};
+INSTANTIATE_TEST_SUITE_P(after_millis, MachineToolLateScan, ::testing::Range(400, 700, 10));
+
+TEST_P(MachineToolLateScan, is_within_the_watchdog_and_misleads_no_magazine) {
+  change_to(1, 100ms, [&] {
+    rig.now += 6ms;  // pockets do not pass at the time of a scan
+    rig.run_for(after);
+    rig.now += 200ms;
+  });
 }
 
 }  // namespace
