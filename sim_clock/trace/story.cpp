@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sim_clock/explore/duration_text.hpp"
+#include "sim_clock/trace/value_text.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -326,13 +327,14 @@ std::string Story::describe(const Line& line) const {
     }
   }
   if (has_value && is_update(event.operation.kind)) {
-    text += fmt::format(": {} -> {}", event.before, event.after);
+    text += fmt::format(": {} -> {}", value_text(world_, event.operation, event.before),
+                        value_text(world_, event.operation, event.after));
   } else if (has_value) {
     text += changes_memory(event.operation.kind) ? " :=" : " =";
     constexpr std::size_t values_max = 4;
     const std::size_t values = is_row ? line.events.size() : 1;
     for (std::size_t i = 0; i < std::min(values, values_max); ++i)
-      text += fmt::format(" {}", events_[line.events[i]].after);
+      text.append(1, ' ').append(value_text(world_, event.operation, events_[line.events[i]].after));
     if (values > values_max) text += " ...";
   }
   if (!is_row && line.events.size() > 1) text += fmt::format(", {} times", line.events.size());

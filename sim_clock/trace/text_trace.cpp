@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/trace/value_text.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
@@ -18,7 +19,8 @@ void TextTrace::performs(const Task& task, const Operation& operation) noexcept 
     unfinished_write_ = operation;
     write_is_unfinished_ = true;
   } else {
-    text_.insert(text_.size() - 1, fmt::format(" = {}", world_.value_at(operation)));
+    text_.insert(text_.size() - 1,
+                 fmt::format(" = {}", value_text(world_, operation, world_.value_at(operation))));
   }
 }
 
@@ -69,7 +71,8 @@ void TextTrace::line(std::string_view task, std::string_view what, std::string_v
 void TextTrace::finish_write() {
   if (!write_is_unfinished_) return;
   write_is_unfinished_ = false;
-  text_.insert(text_.size() - 1, fmt::format(" := {}", world_.value_at(unfinished_write_)));
+  text_.insert(text_.size() - 1, fmt::format(" := {}", value_text(world_, unfinished_write_,
+                                                                  world_.value_at(unfinished_write_))));
 }
 
 }  // namespace ltsim

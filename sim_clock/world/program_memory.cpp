@@ -1,6 +1,7 @@
 #include "sim_clock/world/program_memory.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -105,6 +106,11 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
 }
 
 void* ProgramMemory::allocate(std::size_t bytes, std::size_t alignment, const void* caller) noexcept {
+  constexpr std::size_t no_machine_has = std::size_t{1} << 40U;  // so libc would have refused it, too
+  if (bytes >= no_machine_has) {
+    errno = ENOMEM;
+    return nullptr;
+  }
   void* const block = ProgramHeap::allocate(bytes, alignment, ProgramImage::site_of(caller));
   if (block == nullptr)
     world_.unsupported(fmt::format(
@@ -143,6 +149,7 @@ void* ProgramMemory::reallocate(void* address, std::size_t bytes, const void* ca
   if (block == nullptr || block->is_freed) fail_to_free(address);
   const std::size_t common = std::min<std::size_t>(block->bytes, bytes);
   void* const other = allocate(bytes, ProgramHeap::granule_bytes, caller);
+  if (other == nullptr) return nullptr;
   std::memcpy(other, address, common);
   free(address, caller);
   return other;

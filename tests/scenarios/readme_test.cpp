@@ -38,7 +38,8 @@ class ReadmeTest : public testing::Test {
 
   /// What the command prints, with the program as the README calls it.
   std::vector<std::string> run(const std::string& command) const {
-    const std::string line = replaced(command, shown_program, LTSIM_PROGRAM);
+    const std::string line =
+        replaced(replaced(command, shown_program, LTSIM_PROGRAM), " ./two_stage", " " TWO_STAGE_PROGRAM);
     std::istringstream output{
         replaced(test_support::run_in(folder_.path(), line).output, LTSIM_PROGRAM, shown_program)};
     return lines_of(output);

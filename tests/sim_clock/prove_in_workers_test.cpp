@@ -124,14 +124,14 @@ TEST_P(ProveInWorkers, interrupted_again_and_again_it_comes_to_the_same) {
 
 TEST_P(ProveInWorkers, what_cannot_be_simulated_is_an_error) {
   const auto body = [](World& world) {
-    const bool calls = world.choose("rand", 40) == 7;
+    const bool calls = world.choose("fork", 40) == 7;
     world.process("p").start("main", [calls] {
-      if (calls) static_cast<void>(rand());
+      if (calls) static_cast<void>(fork());
     });
     world.run();
   };
   EXPECT_EQ(as_text(prove(body, GetParam())), as_text(prove_alone(body)));
-  EXPECT_NE(prove(body, GetParam()).error.value_or("").find("rand"), std::string::npos);
+  EXPECT_NE(prove(body, GetParam()).error.value_or("").find("fork"), std::string::npos);
 }
 
 TEST_P(ProveInWorkers, a_machine_of_one_processor_is_refused) {

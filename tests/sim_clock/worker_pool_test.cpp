@@ -106,19 +106,19 @@ void is_only_slow(World& world) {
   world.run();
 }
 
-void calls_rand_when_asked_to(World& world) {
-  const bool calls = world.choose("rand", 40) == 7;
+void calls_fork_when_asked_to(World& world) {
+  const bool calls = world.choose("fork", 40) == 7;
   world.process("p").start("main", [calls] {
-    if (calls) static_cast<void>(rand());
+    if (calls) static_cast<void>(fork());
   });
   world.run();
 }
 
 /// What cannot be simulated comes at once, the failure takes its time.
-void fails_late_or_calls_rand(World& world) {
+void fails_late_or_calls_fork(World& world) {
   const bool fails = world.choose("fail", 2) == 1;
   world.process("p").start("main", [fails] {
-    if (!fails) static_cast<void>(rand());
+    if (!fails) static_cast<void>(fork());
     const GhostScope ghost;
     const auto begin = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - begin < 10ms) {
@@ -152,10 +152,10 @@ TEST_P(WorkerPool, going_on_reports_and_counts_what_one_process_alone_finds) {
 TEST_P(WorkerPool, equal_seeds_and_jobs_give_equal_reports) {
   for (const bool keep_going : {false, true}) {
     for (const auto body :
-         {&fails_in_three_ways, &kills_its_process_when_asked_to, &calls_rand_when_asked_to}) {
+         {&fails_in_three_ways, &kills_its_process_when_asked_to, &calls_fork_when_asked_to}) {
       const ExploreOptions options = at_most(500, keep_going);
       // What comes after the error, and whether it still counts, depends on time.
-      if (keep_going && body == &calls_rand_when_asked_to) continue;
+      if (keep_going && body == &calls_fork_when_asked_to) continue;
       EXPECT_EQ(as_text(explore(body, GetParam(), options)), as_text(explore(body, GetParam(), options)));
     }
   }
@@ -181,9 +181,9 @@ TEST_P(WorkerPool, a_dead_worker_loses_its_own_execution_only_and_that_is_report
 }
 
 TEST_P(WorkerPool, what_cannot_be_simulated_ends_the_exploration) {
-  const WorkerPoolReport report = explore(&calls_rand_when_asked_to, GetParam(), at_most(1000));
+  const WorkerPoolReport report = explore(&calls_fork_when_asked_to, GetParam(), at_most(1000));
   ASSERT_TRUE(report.error);
-  EXPECT_NE(report.error->find("rand"), std::string::npos) << *report.error;
+  EXPECT_NE(report.error->find("fork"), std::string::npos) << *report.error;
   EXPECT_TRUE(report.explored.failures.empty());
   EXPECT_LT(report.explored.executions, 1000U);
 }
@@ -217,8 +217,8 @@ TEST(WorkerPools, a_failure_counts_although_another_worker_was_faster_with_an_er
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     ExploreOptions options = at_most(2);
     options.seed = seed;
-    const WorkerPoolReport report = explore(&fails_late_or_calls_rand, 2, options);
-    EXPECT_EQ(as_text(report), as_text(explore(&fails_late_or_calls_rand, 1, options))) << "seed " << seed;
+    const WorkerPoolReport report = explore(&fails_late_or_calls_fork, 2, options);
+    EXPECT_EQ(as_text(report), as_text(explore(&fails_late_or_calls_fork, 1, options))) << "seed " << seed;
     failures_count += static_cast<unsigned>(report.explored.failures.size());
   }
   EXPECT_GT(failures_count, 1U);
