@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "sim_clock/world/object_names.hpp"
@@ -37,8 +38,9 @@ class ProgramSymbols {
       elf_end(elf);
     }
     close(file);
-    std::stable_sort(symbols_.begin(), symbols_.end(),
-                     [](const ProgramSymbol& a, const ProgramSymbol& b) { return a.offset < b.offset; });
+    std::sort(symbols_.begin(), symbols_.end(), [](const ProgramSymbol& a, const ProgramSymbol& b) {
+      return std::tie(a.offset, a.name) < std::tie(b.offset, b.name);
+    });
   }
 
   [[nodiscard]] const ProgramSymbol& at(std::uint32_t offset) const {

@@ -69,7 +69,8 @@ RaceDetector::LastWrite RaceDetector::access(const SharedAccess& access) {
 RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const noexcept {
   Others others;
   const Ticks* const known = order_.known_to(access.task);
-  for (std::size_t index = access.place / granule_bytes; index * granule_bytes < access.place + access.bytes; ++index) {
+  for (std::size_t index = access.place / granule_bytes; index * granule_bytes < access.place + access.bytes;
+       ++index) {
     const Granule& granule = granules_[index];
     if (granule.generation != generation_) continue;
     for (std::uint32_t number = granule.first; number != none; number = cells_[number].next) {
@@ -78,9 +79,9 @@ RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const n
       others.any = true;
       if (!access.writes && (cell.flags & write_flag) == 0) continue;
       const bool is_plain = access.plain || (cell.flags & plain_flag) != 0;
-      others.contend = others.contend ||
-                       (is_plain ? cell.ticks > known[cell.task]
-                                 : !order_.is_ordered_by_family(cell.task, cell.ticks, access.task));
+      others.contend =
+          others.contend || (is_plain ? cell.ticks > known[cell.task]
+                                      : !order_.is_ordered_by_family(cell.task, cell.ticks, access.task));
     }
   }
   return others;

@@ -21,7 +21,8 @@ std::string at(std::uint32_t site) {
 }  // namespace
 
 std::string describe(const Race& race, const World& world) {
-  Operation operation{.kind = race.one.writes ? OperationKind::write : OperationKind::read, .bytes = race.bytes};
+  Operation operation{.kind = race.one.writes ? OperationKind::write : OperationKind::read,
+                      .bytes = race.bytes};
   if (race.place < segment_places_count) {
     operation.object = world.segments().segment_at(race.place);
     operation.offset = Segments::offset_in_segment(race.place);

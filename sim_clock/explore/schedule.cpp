@@ -248,10 +248,11 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       deviation->line = number;
       schedule.deviations.push_back(std::move(*deviation));
     } else {
-      return error(fmt::format(
-          "\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, program, argument, input, switch, "
-          "time, stall, fault, crash, choose, older",
-          words.front()));
+      return error(
+          fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, "
+                      "program, argument, input, switch, "
+                      "time, stall, fault, crash, choose, older",
+                      words.front()));
     }
   }
   number = number == 0 ? 1 : number;

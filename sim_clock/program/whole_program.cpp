@@ -29,7 +29,7 @@ class WholeProgram {
 
   void execute(World& world) {
     restore();
-    world.set_exit([this, &world](int status, const void* stack) { exit(world, status, stack); });
+    world.set_exit([&world](int status, const void* stack) { exit(world, status, stack); });
     world.process("program").start("main", [this, &world] {
       const int status =
           start_.main(static_cast<int>(arguments_.size()), pointers_.data(), start_.environment);

@@ -102,7 +102,8 @@ void tell_failures(const ExploreArguments& arguments, std::string_view program, 
         failure.has_schedule ? write_file(path, to_string(failure.schedule)) : FileResult{};
     tell_how_to_see_again(arguments, program, failure, path, written);
     report.schedule_paths.push_back(failure.has_schedule && written ? path : "");
-    if (!failure.output.empty()) tell_output(std::filesystem::path{path}.replace_extension(".output").string(), failure.output);
+    if (!failure.output.empty())
+      tell_output(std::filesystem::path{path}.replace_extension(".output").string(), failure.output);
   }
 }
 

@@ -44,7 +44,8 @@ int replay(const ReplayArguments& arguments) {
              report.outcome.message.empty() ? "" : ": ", report.outcome.message, to_text(report.at),
              report.trace_hash);
   if (tells_story) fmt::print("{}", story.text(report.outcome));
-  if (!world.output().empty()) fmt::print("  output:\n{}{}", world.output(), world.output().ends_with('\n') ? "" : "\n");
+  if (!world.output().empty())
+    fmt::print("  output:\n{}{}", world.output(), world.output().ends_with('\n') ? "" : "\n");
   if (!same_failure(report.outcome, schedule)) {
     fmt::print("  not as recorded: {}{}{}\n", to_string(schedule.outcome),
                schedule.message.empty() ? "" : ": ", schedule.message);

@@ -82,7 +82,8 @@ void* copy_in_pieces(void* to, const void* from, std::size_t bytes, std::uint32_
 }
 
 bool is_shared(const void* address, std::uint32_t site) noexcept {
-  return Segments::contains(address) || (site != 0 && ltsim::ProgramMemory::is_on() && ltsim::ProgramMemory::find(address));
+  return Segments::contains(address) ||
+         (site != 0 && ltsim::ProgramMemory::is_on() && ltsim::ProgramMemory::find(address));
 }
 
 bool is_shared_copy(const void* a, const void* b, std::uint32_t site) noexcept {

@@ -100,7 +100,9 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.body_frame = nullptr;
   task.traits = {};
   task.storage->reset();
-  if (decides_apart_) task.storage->clean_stack_below(task.storage->stack_top(), cleaned_at_begin);
+  // A whole program may look at what nobody has written there: it finds the same each time.
+  if (decides_apart_ || ProgramMemory::is_on())
+    task.storage->clean_stack_below(task.storage->stack_top(), cleaned_at_begin);
   task.context.prepare(task.storage->stack_top(), task.storage->thread_pointer(), &run_task, &task);
   world_.checks().task_begins(task.id);
   ++unfinished_count_;

@@ -116,7 +116,8 @@ void* take_slot() {
 TaskStorage::TaskStorage() {
   stack_base_ = take_slot();
   stack_top_ = static_cast<char*>(stack_base_) + slot_bytes;
-  LTSIM_CHECK(mprotect(static_cast<char*>(stack_top_) - stack_bytes, stack_bytes, PROT_READ | PROT_WRITE) == 0);
+  LTSIM_CHECK(mprotect(static_cast<char*>(stack_top_) - stack_bytes, stack_bytes, PROT_READ | PROT_WRITE) ==
+              0);
 
   thread_pointer_ = _dl_allocate_tls(nullptr);
   LTSIM_CHECK(thread_pointer_ != nullptr);
@@ -133,8 +134,8 @@ TaskStorage::~TaskStorage() {
   std::erase(thread_pointers_of_tasks(), thread_pointer_);
   _dl_deallocate_tls(thread_pointer_, true);
   // The slot stays reserved for the next one; what was on the stack is let go.
-  LTSIM_CHECK(mmap(stack_base_, slot_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1,
-                   0) == stack_base_);
+  LTSIM_CHECK(mmap(stack_base_, slot_bytes, PROT_NONE,
+                   MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1, 0) == stack_base_);
   slots_taken[slot()] = false;
 }
 

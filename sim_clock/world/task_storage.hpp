@@ -44,7 +44,8 @@ class TaskStorage {
   template <typename Visit>
   void visit_thread_locals(const Visit& visit) const {
     for (const std::ptrdiff_t from_thread_pointer : thread_local_words())
-      visit(*reinterpret_cast<const std::uintptr_t*>(static_cast<const char*>(thread_pointer_) + from_thread_pointer));
+      visit(*reinterpret_cast<const std::uintptr_t*>(static_cast<const char*>(thread_pointer_) +
+                                                     from_thread_pointer));
   }
   /// Whether the address lies in the stack or among the thread-locals.
   [[nodiscard]] bool contains(std::uintptr_t address) const noexcept;

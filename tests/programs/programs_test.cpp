@@ -19,6 +19,8 @@ struct Program {
   std::string_view name;
   std::string_view outcomes;  ///< one of these words; which, depends on the seed
   std::string_view options = "";
+  /// False: it looks at a frame that is gone, where the simulator's own functions have been since; how that ends may differ.
+  bool ends_alike = true;
 };
 
 void PrintTo(const Program& program, std::ostream* out) { *out << program.name; }
@@ -36,7 +38,7 @@ constexpr Program programs[] = {
     {"deadlock_three_locks", "deadlock"},
     {"deadlock_two_locks", "deadlock"},
     {"dekker_relaxed", "assertion", "--memory c11"},
-    {"detached_stack_frame", "exit data-race"},
+    {"detached_stack_frame", "exit data-race crash", "", false},
     {"dining_philosophers", "deadlock"},
     {"double_checked_locking", "data-race"},
     {"double_close", "crash"},
@@ -198,7 +200,7 @@ TEST_P(ProgramTest, shows_its_bug_and_shows_it_again) {
       << found.output;
   const Result again = ltsim("replay out/" + name + ".schedule");
   EXPECT_EQ(again.exit_code, 1) << again.output;
-  EXPECT_EQ(again.output.find("not as recorded"), std::string::npos) << again.output;
+  EXPECT_EQ(contains(again, "not as recorded") && GetParam().ends_alike, false) << again.output;
 }
 
 TEST_P(ProgramTest, is_silent_where_it_is_correct) {

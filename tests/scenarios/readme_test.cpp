@@ -65,7 +65,7 @@ TEST_F(ReadmeTest, commands_print_what_is_shown) {
     ++commands;
     EXPECT_EQ(run(readme_[i].substr(indent.size() + 2)), block_at(i + 1)) << readme_[i];
   }
-  EXPECT_EQ(commands, 2);
+  EXPECT_EQ(commands, 3);
 }
 
 }  // namespace

@@ -117,8 +117,9 @@ TEST_F(ThreadEndsTest,
       (Outcome{
           OutcomeKind::assertion,
           "p/main: what pthread_exit() throws was caught by \"catch (...)\", which has to throw it on"}));
-  EXPECT_EQ(run_task([](World&) { []() noexcept { pthread_exit(nullptr); }(); }).kind,
-            OutcomeKind::assertion);
+  // By gcc std::terminate() has no exception to tell of, by clang it has one of an unknown type.
+  const OutcomeKind kind = run_task([](World&) { []() noexcept { pthread_exit(nullptr); }(); }).kind;
+  EXPECT_TRUE(kind == OutcomeKind::assertion || kind == OutcomeKind::crash) << to_string(kind);
 }
 
 TEST_F(ThreadEndsTest, pthread_exit_in_a_destructor_that_runs_at_the_end_is_refused) {
