@@ -3,10 +3,11 @@
 // Correction: it starts with the number of printers.
 
 #undef NDEBUG
+#include <semaphore.h>
+
 #include <array>
 #include <atomic>
 #include <cassert>
-#include <semaphore>
 #include <thread>
 #include <vector>
 
@@ -14,14 +15,15 @@ constexpr int printers = 2;
 constexpr int clients = 3;
 
 #ifdef CORRECTED
-static std::counting_semaphore<clients> free_printers(printers);
+constexpr unsigned tokens = printers;
 #else
-static std::counting_semaphore<clients> free_printers(printers + 1);
+constexpr unsigned tokens = printers + 1;
 #endif
+static sem_t free_printers;
 static std::array<std::atomic<bool>, printers> busy{};
 
 static void print() {
-  free_printers.acquire();
+  sem_wait(&free_printers);
   bool printed = false;
   for (std::atomic<bool>& printer : busy) {
     if (printer.exchange(true)) continue;
@@ -30,10 +32,11 @@ static void print() {
     break;
   }
   assert(printed);
-  free_printers.release();
+  sem_post(&free_printers);
 }
 
 int main() {
+  sem_init(&free_printers, 0, tokens);
   std::vector<std::jthread> threads;
   for (int i = 0; i < clients; ++i) threads.emplace_back(print);
   return 0;
