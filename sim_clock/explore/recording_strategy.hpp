@@ -22,10 +22,17 @@ class RecordingStrategy final : public Strategy {
   [[nodiscard]] std::size_t strike(FaultKind kind, std::size_t variants_count) noexcept override;
   [[nodiscard]] std::size_t answer(std::size_t count) noexcept override;
   [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override;
+  // What is recorded is the execution that the chooser has without it: but for telling states apart, which would let go of this one as
+  // one that was seen.
+  [[nodiscard]] bool points_cost_time() const noexcept override { return chooser_.points_cost_time(); }
   [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     chooser_.performs(task, operation);
   }
+  void resumes(TaskId task, const Operation& operation) noexcept override {
+    chooser_.resumes(task, operation);
+  }
+  void only_looked() noexcept override { chooser_.only_looked(); }
 
   [[nodiscard]] const std::vector<Deviation>& deviations() const noexcept { return deviations_; }
 
