@@ -159,6 +159,15 @@ TEST_F(CommandLineTest, a_checkpoint_of_another_version_is_refused) {
   EXPECT_EQ(ltsim("prove paper/one-request --out . --anew").exit_code, 0);
 }
 
+TEST_F(CommandLineTest, what_prove_finds_where_points_take_no_time_is_told_and_can_be_replayed) {
+  const Result found = ltsim(
+      "prove hardened/m2-withdrawn-by-a-store --states --preemptions 2 --silences 1 --minimize-seconds 0 "
+      "--out .");
+  EXPECT_EQ(found.exit_code, 1);
+  EXPECT_NE(found.output.find("invariant: I6: "), std::string::npos) << found.output;
+  EXPECT_EQ(ltsim("replay hardened-m2-withdrawn-by-a-store.schedule").exit_code, 1);
+}
+
 TEST_F(CommandLineTest, prove_tells_states_apart) {
   const Result settled = ltsim("prove races/stale-answer-modulo-1-corrected --states --silences any --out .");
   EXPECT_EQ(settled.exit_code, 0);
