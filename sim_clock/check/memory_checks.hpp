@@ -63,11 +63,9 @@ class MemoryChecks {
   [[nodiscard]] RaceDetector::Others others_at(const SharedAccess& access) const noexcept {
     return races_.others_at(access);
   }
-  /// Something else lies there from now on.
-  void made_anew(SharedPlace place, std::size_t bytes) noexcept { races_.forget(place, bytes); }
   /// An atomic access has been made.
   /// @param canonical_address  Segments::canonical(), which names it also outside of segments
-  /// @param shared             it lies in a segment, at `where.place`
+  /// @param shared             it is shared memory, at `where.place`
   void atomic(SharedAccess where, std::uint64_t canonical_address, bool shared, AtomicAccess access,
               int order) {
     const SyncKey key = SyncKey::atomic(canonical_address);

@@ -87,12 +87,6 @@ RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const n
   return others;
 }
 
-void RaceDetector::forget(SharedPlace place, std::size_t bytes) noexcept {
-  // The cells of those granules are free again with the next execution.
-  for (std::size_t i = place / granule_bytes; i * granule_bytes < place + bytes; ++i)
-    granules_[i].generation = generation_ - 1;
-}
-
 void RaceDetector::access_granule(std::size_t index, Granule& granule, Cell access) {
   const Ticks* const known = order_.known_to(access.task);
   std::uint32_t place = none;  // of the new cell: that of one it stands for

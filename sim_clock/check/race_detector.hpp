@@ -75,9 +75,6 @@ class RaceDetector {
   /// Who else has accessed, in this execution, one of the bytes that `access` is about to.
   [[nodiscard]] Others others_at(const SharedAccess& access) const noexcept;
 
-  /// What was accessed there is gone, and what is there now is something else.
-  void forget(SharedPlace place, std::size_t bytes) noexcept;
-
   /// The first race of this execution.
   [[nodiscard]] const std::optional<Race>& race() const noexcept { return race_; }
 

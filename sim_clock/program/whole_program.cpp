@@ -29,11 +29,11 @@ class WholeProgram {
 
   void execute(World& world) {
     restore();
-    world.set_exit([&world](int status, const void* stack) { exit(world, status, stack); });
+    world.set_exit([&world](const World::Exit& how) { exit(world, how); });
     world.process("program").start("main", [this, &world] {
       const int status =
           start_.main(static_cast<int>(arguments_.size()), pointers_.data(), start_.environment);
-      exit(world, status, __builtin_frame_address(0));
+      exit(world, {.status = status, .stack = __builtin_frame_address(0)});
     });
     capture_.begin();
     try {
@@ -59,13 +59,16 @@ class WholeProgram {
   }
 
   /// In the task that ends the program, or has returned from main().
-  static void exit(World& world, int status, const void* stack) {
-    ExitHandlers::run();
-    world.program_memory().check_leaks(stack);
+  static void exit(World& world, const World::Exit& how) {
+    if (how.is_orderly) {
+      Scheduler::destroy_thread_locals(*current_task);
+      ExitHandlers::run();
+      world.program_memory().check_leaks(how.stack);
+    }
     constexpr int status_mask = 0xff;  // of which a parent gets to know
-    if ((status & status_mask) != 0)
-      world.scheduler().fail(OutcomeKind::exit,
-                             fmt::format("the program ended with status {}", status & status_mask));
+    const int status = how.status & status_mask;
+    if (status != 0)
+      world.scheduler().fail(OutcomeKind::exit, fmt::format("the program ended with status {}", status));
     world.finish();
   }
 

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 
-#include "sim_clock/check/code_site.hpp"
 #include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -25,16 +24,16 @@ bool point(const volatile void* address, std::size_t bytes, OperationKind kind, 
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return false;
   if (Segments::contains(address)) {
-    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller),
+    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::ProgramImage::site_of(caller),
                          ltsim::is_seq_cst(order));
-  } else if (!ltsim::access_program(*self->world, address, bytes, kind, ltsim::code_site(caller),
+  } else if (!ltsim::access_program(*self->world, address, bytes, kind, ltsim::ProgramImage::site_of(caller),
                                     ltsim::is_seq_cst(order))) {
     self->world->scheduler().point(
         {.kind = kind,
          .bytes = static_cast<std::uint8_t>(bytes),
          .is_seq_cst = ltsim::is_seq_cst(order),
          .offset = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(address)),
-         .site = ltsim::code_site(caller)});
+         .site = ltsim::ProgramImage::site_of(caller)});
   }
   return true;
 }
@@ -46,7 +45,7 @@ ltsim::SharedAccess shared_access(const ltsim::Task& self, ltsim::SharedPlace pl
           .bytes = static_cast<std::uint8_t>(bytes),
           .writes = writes(access),
           .plain = false,
-          .site = ltsim::code_site(caller)};
+          .site = ltsim::ProgramImage::site_of(caller)};
 }
 
 /// The operation was performed, as what it turned out to be: a compare-and-exchange that fails is a load.

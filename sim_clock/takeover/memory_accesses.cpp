@@ -7,7 +7,6 @@
 
 #include <cstddef>
 
-#include "sim_clock/check/code_site.hpp"
 #include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -23,10 +22,10 @@ using ltsim::Segments;
   ltsim::Task* const self = ltsim::current_task;
   if (self == nullptr) return;
   if (Segments::contains(address)) {
-    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::code_site(caller));
+    ltsim::access_shared(*self->world, address, bytes, kind, ltsim::ProgramImage::site_of(caller));
     return;
   }
-  ltsim::access_program(*self->world, address, bytes, kind, ltsim::code_site(caller));
+  ltsim::access_program(*self->world, address, bytes, kind, ltsim::ProgramImage::site_of(caller));
   // Where an atomic object was, or is being made.
   if (kind == OperationKind::write) self->world->weak_memory().written_plainly(address, bytes);
 }

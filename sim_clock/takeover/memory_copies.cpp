@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "sim_clock/check/code_site.hpp"
 #include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -92,7 +91,7 @@ bool is_shared_copy(const void* a, const void* b, std::uint32_t site) noexcept {
 
 template <typename Next>
 void* copy(Next& next, void* to, const void* from, std::size_t bytes, const void* caller) noexcept {
-  const std::uint32_t site = ltsim::code_site(caller);
+  const std::uint32_t site = ltsim::ProgramImage::site_of(caller);
   if (is_shared_copy(to, from, site)) [[unlikely]]
     return copy_in_pieces(to, from, bytes, site);
   auto* const function = next.get();
@@ -103,7 +102,7 @@ void* copy(Next& next, void* to, const void* from, std::size_t bytes, const void
 }
 
 void* fill(void* to, int value, std::size_t bytes, const void* caller) noexcept {
-  const std::uint32_t site = ltsim::code_site(caller);
+  const std::uint32_t site = ltsim::ProgramImage::site_of(caller);
   if (ltsim::current_task != nullptr && is_shared(to, site)) [[unlikely]] {
     for (std::size_t done = 0; done < bytes; done += piece_bytes) {
       const std::size_t piece = std::min(piece_bytes, bytes - done);

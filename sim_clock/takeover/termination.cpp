@@ -61,21 +61,21 @@ extern "C" void __assert_fail(const char* expression, const char* file, unsigned
   __builtin_unreachable();
 }
 
-// exit(3) and its kind would end the simulator and every result with it, unless the world knows what they come to. The second
+// exit(3) and its kind would end the simulator and every result with it, unless the world knows what they come to. The last
 // argument is the exception specification of libc's declaration.
-#define LTSIM_EXIT(name, specification)                                                            \
-  extern "C" void name(int status) specification {                                                 \
+#define LTSIM_EXIT(name, is_orderly_, specification)                                               \
+  extern "C" void name(int status_) specification {                                                \
     if (current_task == nullptr) {                                                                 \
-      LTSIM_NEXT(name)(status);                                                                    \
+      LTSIM_NEXT(name)(status_);                                                                   \
     } else if (const auto& exit = current_task->world->exit(); exit) {                             \
-      exit(status, __builtin_frame_address(0));                                                    \
+      exit({.status = status_, .is_orderly = is_orderly_, .stack = __builtin_frame_address(0)});   \
     } else {                                                                                       \
       fail(ltsim::OutcomeKind::unsupported, #name "() was called, which would end the simulator"); \
     }                                                                                              \
     __builtin_unreachable();                                                                       \
   }
 
-LTSIM_EXIT(exit, noexcept)
-LTSIM_EXIT(_exit, )
-LTSIM_EXIT(_Exit, noexcept)
-LTSIM_EXIT(quick_exit, noexcept)
+LTSIM_EXIT(exit, true, noexcept)
+LTSIM_EXIT(_exit, false, )
+LTSIM_EXIT(_Exit, false, noexcept)
+LTSIM_EXIT(quick_exit, false, noexcept)

@@ -44,7 +44,7 @@ class ProgramHeap {
   static void begin_program();
   [[nodiscard]] static bool is_on() noexcept { return marks_ != nullptr; }
 
-  /// Whether a block that is asked for now lies here: a task asks, or what runs before main().
+  /// Whether who asks for a block gets it here: code of the program, in a task or before main().
   /// @param caller  return address of the call
   [[nodiscard]] static bool serves(const void* caller) noexcept {
     return is_on() && (current_task != nullptr || serves_outside_tasks_) &&

@@ -74,8 +74,8 @@ ProgramMemory::Place ProgramMemory::of(SharedPlace place) noexcept {
   return {variables_object, place - variables_first, place};
 }
 
-Operation ProgramMemory::access(const volatile void* address, const Place& place, std::size_t bytes,
-                                OperationKind kind, std::uint32_t site, bool is_seq_cst) noexcept {
+void ProgramMemory::access(const volatile void* address, const Place& place, std::size_t bytes,
+                           OperationKind kind, std::uint32_t site, bool is_seq_cst) noexcept {
   Operation operation{.kind = kind,
                       .bytes = static_cast<std::uint8_t>(bytes),
                       .is_seq_cst = is_seq_cst,
@@ -84,7 +84,7 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
                       .site = site};
   if (place.object == heap_object) check_heap(address, bytes, kind, site);
   Scheduler& scheduler = world_.scheduler();
-  if (scheduler.tasks_count() == 1) return operation;
+  if (scheduler.tasks_count() == 1) return;
   const bool is_atomic = kind != OperationKind::read && kind != OperationKind::write;
   const bool is_on_own_stack = place.object == stacks_object &&
                                current_task->storage->slot() == place.offset / TaskStorage::stack_bytes;
@@ -102,7 +102,6 @@ Operation ProgramMemory::access(const volatile void* address, const Place& place
       check_heap(address, bytes, kind, site);  // somebody may have freed it meanwhile
   }
   if (!is_atomic && world_.checks().on()) world_.checks().accessed(shared, kind == OperationKind::read);
-  return operation;
 }
 
 void* ProgramMemory::allocate(std::size_t bytes, std::size_t alignment, const void* caller) noexcept {

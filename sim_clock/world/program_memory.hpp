@@ -56,8 +56,7 @@ class ProgramMemory {
 
   /// The running task is about to access memory that find() has found: with its scheduling point. Ends the execution as a crash if
   /// that is no memory of the program (any more).
-  /// @return what the point was for
-  Operation access(const volatile void* address, const Place& place, std::size_t bytes, OperationKind kind,
+  void access(const volatile void* address, const Place& place, std::size_t bytes, OperationKind kind,
                    std::uint32_t site, bool is_seq_cst = false) noexcept;
 
   /// The running task is about to use a synchronisation object. Ends the execution as a crash if it is not there (any more).

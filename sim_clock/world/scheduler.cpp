@@ -179,12 +179,16 @@ void Scheduler::run_task(void* argument) noexcept {
   asm volatile("" ::: "memory");  // or the call of the body would be a jump, and this frame gone
 }
 
-void Scheduler::run_destructors(Task& self) {
+void Scheduler::destroy_thread_locals(Task& self) {
   while (!self.thread_local_destructors.empty()) {
     const auto last = self.thread_local_destructors.back();
     self.thread_local_destructors.pop_back();
     last.destroy(last.object);
   }
+}
+
+void Scheduler::run_destructors(Task& self) {
+  destroy_thread_locals(self);
   self.world->thread_specific().destroy_values(self);  // last, as with glibc
 }
 

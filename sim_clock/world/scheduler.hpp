@@ -143,6 +143,9 @@ class Scheduler {
   /// Whether anybody has looked at time or waited for it in this execution.
   [[nodiscard]] bool time_has_mattered() const noexcept { return clock_was_read_ || clock_.any_armed_ever(); }
 
+  /// By the task itself, as the last that it does: destroys its thread_local objects, the last one that was made first.
+  static void destroy_thread_locals(Task& self);
+
   // --- failing ---
 
   /// Ends the execution with this outcome; the first one counts. Inside a task it does not return.

@@ -235,9 +235,13 @@ class World {
 
   [[nodiscard]] SimTime now() const noexcept { return scheduler_.clock().now(); }
 
-  /// What exit(3) comes to in a task; without it exit(3) is refused. Must end the execution.
-  /// @param exit  gets the status and where the stack of the caller begins
-  void set_exit(std::function<void(int, const void*)> exit) { exit_ = std::move(exit); }
+  struct Exit {
+    int status = 0;
+    bool is_orderly = true;       ///< by exit(3), not by _exit(2) and its kind: handlers are called
+    const void* stack = nullptr;  ///< of the task that exits: what lies below is of no interest to anybody
+  };
+  /// What exit(3) and its kind come to in a task; without it they are refused. Must end the execution.
+  void set_exit(std::function<void(const Exit&)> exit) { exit_ = std::move(exit); }
   /// What the code under test has written on its standard output and for errors: shown with a failure.
   void set_output(std::string text) { output_ = std::move(text); }
   [[nodiscard]] const std::string& output() const noexcept { return output_; }
@@ -345,7 +349,7 @@ class World {
   }
   [[nodiscard]] unsigned incarnation(ProcessId id) const noexcept { return processes_[id]->incarnation(); }
 
-  [[nodiscard]] const std::function<void(int, const void*)>& exit() const noexcept { return exit_; }
+  [[nodiscard]] const std::function<void(const Exit&)>& exit() const noexcept { return exit_; }
 
   /// Scheduling point before `operation` of the running task on a synchronisation object. Ends the execution as a crash if that lies in
   /// memory that was freed.
@@ -414,7 +418,7 @@ class World {
   Memory default_memory_ = Memory::sc;
   std::vector<std::string> input_records_;
   std::string input_;
-  std::function<void(int, const void*)> exit_;
+  std::function<void(const Exit&)> exit_;
   std::string output_;
   std::uint64_t execution_number_ = 0;
   SimTime wall_clock_ahead_ = wall_clock_epoch;  // of the monotonic clock

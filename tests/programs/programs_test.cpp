@@ -1,6 +1,7 @@
 // Whole programs, built by ltsim-cc and ltsim-c++ and explored as a stranger does it: each bug is found, as the README of this folder
 // says that it shows, and its schedule fails again; the correct twin is silent.
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <ostream>
@@ -101,6 +102,13 @@ class ProgramsTest : public testing::Test {
   void write(const char* name, const std::string& text) const {
     std::ofstream{folder_.path() / name} << text;
   }
+  /// The program "p" from this source.
+  void build(const char* name, const std::string& source) const {
+    write(name, source);
+    const Result built =
+        shell(std::string{"LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " -std=c++20 -O1 "} + name + " -o p");
+    ASSERT_EQ(built.exit_code, 0) << built.output;
+  }
   [[nodiscard]] std::string read(const char* name) const {
     std::ifstream file{folder_.path() / name};
     return {std::istreambuf_iterator<char>{file}, {}};
@@ -154,6 +162,129 @@ TEST_F(ProgramsTest, give_the_same_report_for_the_same_seed) {
   const Result once = ltsim(command);
   EXPECT_EQ(once.exit_code, 1) << once.output;
   EXPECT_EQ(once.output, ltsim(command).output);
+}
+
+TEST_F(ProgramsTest, begin_each_execution_with_the_memory_that_main_was_called_with) {
+  build("p.cpp", R"(
+    #include <cstring>
+    #include <string>
+    #include <thread>
+    #include <vector>
+    std::vector<int> made_before_main{1, 2, 3};
+    thread_local int of_thread = 5;
+    int calls = 0;
+    int main(int, char** arguments) {
+      const bool as_it_was = calls++ == 0 && made_before_main.size() == 3 && made_before_main[0] == 1 && of_thread++ == 5 &&
+                             std::strcmp(arguments[1], "word") == 0;
+      made_before_main[0] = 7;
+      made_before_main.push_back(4);
+      arguments[1][0] = 'W';
+      std::thread{[] { std::string{"some work"}; }}.join();
+      return as_it_was ? 0 : 1;
+    })");
+  const Result result = ltsim("explore --executions 100 -- ./p word");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(ProgramsTest, exit_as_programs_do) {
+  build("p.cpp", R"(
+    #include <cstdio>
+    #include <cstdlib>
+    #include <cstring>
+    #include <thread>
+    #include <unistd.h>
+    struct Tells {
+      const char* what;
+      ~Tells() { std::puts(what); }
+    };
+    Tells of_program{"static"};
+    thread_local Tells of_thread{"thread-local"};
+    int main(int, char** arguments) {
+      static Tells of_function{"static of a function"};
+      std::atexit([] { std::puts("handler"); });
+      if (of_thread.what == nullptr) return 9;
+      std::thread{[how = arguments[1]] {
+        if (std::strcmp(how, "exit") == 0) std::exit(3);
+        if (std::strcmp(how, "_exit") == 0) _exit(4);
+        if (std::strcmp(how, "_Exit") == 0) std::_Exit(4);
+      }}.join();
+      return 5;
+    })");
+  EXPECT_EQ(ltsim("explore -- ./p return").exit_code, 1);
+  EXPECT_EQ(read("out/p.output"), "thread-local\nhandler\nstatic of a function\nstatic\n");
+  const Result by_thread = ltsim("explore -- ./p exit");
+  EXPECT_TRUE(contains(by_thread, "exit: the program ended with status 3")) << by_thread.output;
+  EXPECT_EQ(read("out/p.output"),
+            "handler\nstatic of a function\nstatic\n");  // the thread has none of its own
+  for (const std::string how : {"_exit", "_Exit"}) {
+    std::filesystem::remove(folder_.path() / "out/p.output");
+    const Result at_once = ltsim("explore -- ./p " + how);
+    EXPECT_TRUE(contains(at_once, "exit: the program ended with status 4")) << at_once.output;
+    EXPECT_EQ(read("out/p.output"), "") << how;
+  }
+}
+
+TEST_F(ProgramsTest, are_told_what_they_do_to_their_heap) {
+  build("p.cpp", R"(
+    #include <cstdlib>
+    #include <cstring>
+    #include <new>
+    int* volatile block;
+    int* volatile other;
+    int main(int, char** arguments) {
+      const auto is = [&](const char* what) { return std::strcmp(arguments[1], what) == 0; };
+      block = static_cast<int*>(std::malloc(10 * sizeof(int)));
+      if (is("reads behind")) return block[10];
+      if (is("writes before")) block[-1] = 1;
+      if (is("frees within")) std::free(block + 1);
+      if (is("uses what it moved")) {
+        other = static_cast<int*>(std::realloc(block, 4000));
+        block[0] = 1;
+      }
+      if (is("loses")) block = nullptr;
+      if (is("asks for too much")) other = new int[std::size_t{1} << 60U];
+      if (is("does well")) {
+        block[9] = 9;
+        other = static_cast<int*>(std::realloc(block, 11 * sizeof(int)));
+        if (other[9] != 9) return 1;
+        other[10] = 10;
+        std::free(other);
+        block = static_cast<int*>(std::calloc(2, sizeof(int)));
+        if (block[0] != 0 || block[1] != 0) return 1;
+        other = new (std::nothrow) int[1];
+        delete[] other;
+        struct alignas(64) Wide {
+          char bytes[64];
+        };
+        Wide* const wide = new Wide;
+        if (reinterpret_cast<unsigned long>(wide) % 64 != 0) return 1;
+        delete wide;
+      }
+      std::free(block);
+      return 0;
+    })");
+  const struct {
+    const char* argument;
+    const char* told;
+  } cases[] = {
+      {"reads behind",
+       "crash: program/main reads at p.cpp:10: 4 bytes at heap.main-1[40], beyond its end: 40 bytes, "
+       "allocated at p.cpp:9"},
+      {"writes before", "crash: program/main writes at p.cpp:11: "},
+      {"frees within", "crash: program/main frees an address where no block begins: heap.main-1[4]"},
+      {"uses what it moved",
+       "crash: program/main writes at p.cpp:15: heap.main-1[0] after it was freed: 40 bytes, "
+       "allocated at p.cpp:9, freed by program/main at p.cpp:14"},
+      {"loses", "leak: heap.main-1 is lost: 40 bytes, allocated at p.cpp:9"},
+      {"asks for too much", "crash: program/main: nobody caught the exception \"std::bad_alloc\""},
+  };
+  for (const auto& [argument, told] : cases) {
+    const Result result = ltsim("explore -- ./p '" + std::string{argument} + "'");
+    EXPECT_EQ(result.exit_code, 1) << argument;
+    EXPECT_TRUE(contains(result, told)) << result.output;
+  }
+  const Result result = ltsim("explore --executions 10 -- ./p 'does well'");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
 TEST_F(ProgramsTest, are_refused_with_the_reason_where_they_cannot_be_looked_into) {
