@@ -60,8 +60,8 @@ class MemoryChecks {
     const RaceDetector::LastWrite last = races_.access(access);
     if (reads) coverage_.reads_from(last, access);
   }
-  [[nodiscard]] RaceDetector::Others others_at(const SharedAccess& access) const noexcept {
-    return races_.others_at(access);
+  [[nodiscard]] bool is_contended(const SharedAccess& access) const noexcept {
+    return races_.is_contended(access);
   }
   /// An atomic access has been made.
   /// @param canonical_address  Segments::canonical(), which names it also outside of segments

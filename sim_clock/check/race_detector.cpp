@@ -66,8 +66,7 @@ RaceDetector::LastWrite RaceDetector::access(const SharedAccess& access) {
   return last;
 }
 
-RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const noexcept {
-  Others others;
+bool RaceDetector::is_contended(const SharedAccess& access) const noexcept {
   const Ticks* const known = order_.known_to(access.task);
   for (std::size_t index = access.place / granule_bytes; index * granule_bytes < access.place + access.bytes;
        ++index) {
@@ -75,16 +74,14 @@ RaceDetector::Others RaceDetector::others_at(const SharedAccess& access) const n
     if (granule.generation != generation_) continue;
     for (std::uint32_t number = granule.first; number != none; number = cells_[number].next) {
       const Cell& cell = cells_[number];
-      if (cell.task == access.task) continue;
-      others.any = true;
-      if (!access.writes && (cell.flags & write_flag) == 0) continue;
+      if (cell.task == access.task || (!access.writes && (cell.flags & write_flag) == 0)) continue;
       const bool is_plain = access.plain || (cell.flags & plain_flag) != 0;
-      others.contend =
-          others.contend || (is_plain ? cell.ticks > known[cell.task]
-                                      : !order_.is_ordered_by_family(cell.task, cell.ticks, access.task));
+      if (is_plain ? cell.ticks > known[cell.task]
+                   : !order_.is_ordered_by_family(cell.task, cell.ticks, access.task))
+        return true;
     }
   }
-  return others;
+  return false;
 }
 
 void RaceDetector::access_granule(std::size_t index, Granule& granule, Cell access) {

@@ -65,15 +65,10 @@ class RaceDetector {
   /// @return who wrote last before this access, where it begins
   LastWrite access(const SharedAccess& access);
 
-  struct Others {
-    bool any = false;
-    /// One of them wrote, or this one is about to, and the order of the two can be another one in another execution: both are
-    /// atomic, and who made and joined whom does not order them; or it is a race. What locks order is not meant: there the order of
-    /// the locks is what can be another one.
-    bool contend = false;
-  };
-  /// Who else has accessed, in this execution, one of the bytes that `access` is about to.
-  [[nodiscard]] Others others_at(const SharedAccess& access) const noexcept;
+  /// Whether another task has accessed, in this execution, one of the bytes that `access` is about to, one of the two writes, and their
+  /// order can be another one in another execution: both are atomic, and who made and joined whom does not order them; or it is a
+  /// race. What locks order is not meant: there the order of the locks is what can be another one.
+  [[nodiscard]] bool is_contended(const SharedAccess& access) const noexcept;
 
   /// The first race of this execution.
   [[nodiscard]] const std::optional<Race>& race() const noexcept { return race_; }

@@ -112,7 +112,7 @@ struct Operation {
   /// nothing to do with each other can be told apart; 0 = no name.
   std::uint8_t name = 0;
   bool is_seq_cst : 1 = false;  ///< an atomic operation or a fence of that memory order
-  /// Of an access to memory of a whole program: RaceDetector::Others::contend.
+  /// Of an access to memory of a whole program: RaceDetector::is_contended().
   bool is_contended : 1 = false;
   ObjectId object = 0;  ///< what it acts on
   /// Of a memory access in a segment: the byte. Of what has no object: the low half of the address, which tells

@@ -94,9 +94,8 @@ void ProgramMemory::access(const volatile void* address, const Place& place, std
                             .writes = changes_memory(kind),
                             .plain = !is_atomic,
                             .site = site};
-  const RaceDetector::Others others = world_.checks().others_at(shared);
-  operation.is_contended = others.contend;
-  if (is_atomic || !is_on_own_stack || others.any) {
+  operation.is_contended = world_.checks().is_contended(shared);
+  if (is_atomic || !is_on_own_stack) {
     scheduler.point(operation);
     if (place.object == heap_object)
       check_heap(address, bytes, kind, site);  // somebody may have freed it meanwhile

@@ -2,7 +2,7 @@
 //
 // Off, for scenarios: there only segments are shared. On, each access to it is a scheduling point, but
 //   - while one task has ever been made: nobody is there who could notice;
-//   - to the task's own stack, where no other task has accessed the same bytes yet.
+//   - a plain one to the task's own stack: what others do there at the same time is a race, and found as one.
 // Accesses to the heap are checked against its blocks.
 #pragma once
 
@@ -57,7 +57,7 @@ class ProgramMemory {
   /// The running task is about to access memory that find() has found: with its scheduling point. Ends the execution as a crash if
   /// that is no memory of the program (any more).
   void access(const volatile void* address, const Place& place, std::size_t bytes, OperationKind kind,
-                   std::uint32_t site, bool is_seq_cst = false) noexcept;
+              std::uint32_t site, bool is_seq_cst = false) noexcept;
 
   /// The running task is about to use a synchronisation object. Ends the execution as a crash if it is not there (any more).
   void check_object(const void* object, std::size_t bytes, OperationKind kind) noexcept {

@@ -287,6 +287,28 @@ TEST_F(ProgramsTest, are_told_what_they_do_to_their_heap) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
+TEST_F(ProgramsTest, are_told_of_a_block_that_is_freed_while_a_thread_stands_before_its_access) {
+  build("p.cpp", R"(
+    #include <atomic>
+    #include <thread>
+    std::atomic<bool> is_there{false};
+    int main() {
+      int* const block = new int{7};
+      std::thread reader{[=] {
+        is_there = true;
+        if (*block != 7) std::abort();
+      }};
+      while (!is_there) std::this_thread::yield();
+      delete block;
+      reader.join();
+    })");
+  const Result result = ltsim("explore --executions 1000 --keep-going -- ./p");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result, "data-race: ")) << result.output;
+  EXPECT_TRUE(contains(result, "crash: program/thread-1 reads at p.cpp:9: heap.main-1[0] after it was freed"))
+      << result.output;
+}
+
 TEST_F(ProgramsTest, are_refused_with_the_reason_where_they_cannot_be_looked_into) {
   write("script", "#!/bin/sh\nexit 0\n");
   write("empty", "");
