@@ -30,6 +30,8 @@ struct SyncKey {
   static SyncKey object(std::uint32_t id) noexcept { return {std::uint64_t{3} << 56U | id}; }
   /// A lock for readers and writers, as its readers leave it: to each other they hand over nothing.
   static SyncKey readers(std::uint32_t id) noexcept { return {std::uint64_t{4} << 56U | id}; }
+  /// Signals to a process.
+  static SyncKey signals(std::uint32_t process) noexcept { return {std::uint64_t{5} << 56U | process}; }
 };
 
 enum class AtomicAccess : std::uint8_t { load, store, update };

@@ -79,14 +79,17 @@ std::vector<std::size_t> lost_blocks(World& world, const void* stack) {
                   [](const ProgramHeap::Block& block) { return block.is_freed; }))
     return {};
   Search search;
-  const auto variables = ProgramImage::variables();
-  search.look_at(variables.data(), variables.data() + variables.size());
+  for (std::size_t i = 0; i < ProgramImage::count(); ++i) {
+    const auto variables = ProgramImage::variables(i);
+    search.look_at(variables.data(), variables.data() + variables.size());
+  }
   const Scheduler& scheduler = world.scheduler();
   for (std::size_t i = 0; i < scheduler.tasks_count(); ++i) {
     const Task& task = scheduler.task(static_cast<TaskId>(i));
     if (task.state == Task::State::finished) continue;
     const void* const begin = &task == scheduler.running() ? stack : task.context.stack_pointer();
     search.look_at(begin, task.storage->stack_top());
+    search.look_at(reinterpret_cast<std::uintptr_t>(task.argument));  // of one that has not begun yet
     task.storage->visit_thread_locals([&](std::uintptr_t word) { search.look_at(word); });
   }
   std::vector<std::size_t> lost = search.lost();

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <tuple>
@@ -27,11 +28,12 @@ std::string readable(const char* name) {
   return text;
 }
 
-class ProgramSymbols {
+/// Of one image.
+class ImageSymbols {
  public:
-  ProgramSymbols() {
+  explicit ImageSymbols(std::size_t image) : image_(image) {
     elf_version(EV_CURRENT);
-    const int file = open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
+    const int file = open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     if (Elf* const elf = elf_begin(file, ELF_C_READ, nullptr); elf != nullptr) {
       read_tables(elf);
@@ -68,29 +70,30 @@ class ProgramSymbols {
 
   void add(Elf* elf, std::size_t names, const GElf_Sym& symbol) {
     if (GELF_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size == 0) return;
-    const auto variables = ProgramImage::variables();
-    const std::uintptr_t offset =
-        symbol.st_value + ProgramImage::loaded_at() - reinterpret_cast<std::uintptr_t>(variables.data());
-    if (offset >= variables.size()) return;
+    const std::uintptr_t address = ProgramImage::file(image_).loaded_at + symbol.st_value;
+    const std::uint32_t offset = ProgramImage::variable_at(reinterpret_cast<const void*>(address));
+    if (offset == ProgramImage::no_variable) return;
     const char* const name = elf_strptr(elf, names, symbol.st_name);
     if (name == nullptr) return;
-    symbols_.push_back({.name = readable(name),
-                        .offset = static_cast<std::uint32_t>(offset),
-                        .bytes = static_cast<std::uint32_t>(symbol.st_size)});
+    symbols_.push_back(
+        {.name = readable(name), .offset = offset, .bytes = static_cast<std::uint32_t>(symbol.st_size)});
   }
 
+  std::size_t image_;
   std::vector<ProgramSymbol> symbols_;  // by offset
   ProgramSymbol all_{.name = "variables",
-                     .offset = 0,
-                     .bytes = static_cast<std::uint32_t>(ProgramImage::variables().size())};
+                     .offset = ProgramImage::first_variable(image_),
+                     .bytes = static_cast<std::uint32_t>(ProgramImage::variables(image_).size())};
 };
 
 }  // namespace
 
 const ProgramSymbol& symbol_at(std::uint32_t offset) {
   const GhostScope ghost;  // the file is the host's
-  static const ProgramSymbols symbols;
-  return symbols.at(offset);
+  static std::array<std::unique_ptr<ImageSymbols>, ProgramImage::images_max> symbols;
+  const std::size_t image = ProgramImage::image_of_variable(offset);
+  if (symbols[image] == nullptr) symbols[image] = std::make_unique<ImageSymbols>(image);
+  return symbols[image]->at(offset);
 }
 
 }  // namespace ltsim

@@ -44,6 +44,8 @@ bool ends_transaction(OperationKind kind) noexcept {
     case OperationKind::static_init:
     case OperationKind::thread_tryjoin:
     case OperationKind::thread_timedjoin:
+    case OperationKind::signal_wait:
+    case OperationKind::signal_send:
       return true;
     default:
       return false;

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -28,16 +29,16 @@ bool is_of_the_code_under_test(std::string_view file) noexcept {
   return !file.empty() && !file.starts_with("/usr/") && file.find("/boost/") == std::string_view::npos;
 }
 
-/// The program's debug information, read once and kept.
+/// The debug information of one image, read once and kept.
 class DebugInformation {
  public:
-  DebugInformation() : file_(open("/proc/self/exe", O_RDONLY | O_CLOEXEC)) {
+  explicit DebugInformation(std::size_t image)
+      : file_(open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC)) {
     if (file_ >= 0) dwarf_ = dwarf_begin(file_, DWARF_C_READ);
   }
 
-  [[nodiscard]] std::string location(std::uint32_t site) const {
-    // A return address: the call stands before it.
-    const Dwarf_Addr address = ProgramImage::linked_address_of(site) - 1;
+  [[nodiscard]] std::string location(std::uintptr_t return_address) const {
+    const Dwarf_Addr address = return_address - 1;  // the call stands before it
     Dwarf_Die unit;
     if (dwarf_ == nullptr || !find_unit(address, unit)) return {};
     const Line line = innermost_line_under_test(unit, address);
@@ -120,8 +121,10 @@ const std::string& source_location(std::uint32_t site) {
   const auto [entry, is_new] = known.try_emplace(site);
   if (!is_new || site == 0) return entry->second;
   const GhostScope ghost;
-  static const DebugInformation information;
-  entry->second = information.location(site);
+  static std::array<std::unique_ptr<DebugInformation>, ProgramImage::images_max> information;
+  const auto [image, linked_address] = ProgramImage::find_site(site);
+  if (information[image] == nullptr) information[image] = std::make_unique<DebugInformation>(image);
+  entry->second = information[image]->location(linked_address);
   return entry->second;
 }
 

@@ -82,6 +82,8 @@ Domain domain_of(OperationKind kind) noexcept {
     case OperationKind::yield:
     case OperationKind::atomic_fence:
       return Domain::nothing;
+    case OperationKind::signal_wait:
+    case OperationKind::signal_send:
     case OperationKind::sem_init:  // makes an object that has no name yet
       return Domain::everything;
   }

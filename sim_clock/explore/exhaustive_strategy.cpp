@@ -39,6 +39,7 @@ bool uses_clock(OperationKind kind) noexcept {
     case OperationKind::rwlock_timedrdlock:
     case OperationKind::rwlock_timedwrlock:
     case OperationKind::thread_timedjoin:
+    case OperationKind::signal_wait:
       return true;
     default:
       return false;

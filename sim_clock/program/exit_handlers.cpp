@@ -2,10 +2,11 @@
 
 namespace ltsim {
 
-void ExitHandlers::run() {
-  while (!handlers_.empty()) {
-    const Handler last = handlers_.back();
-    handlers_.pop_back();
+void ExitHandlers::run(ProcessId process) {
+  std::vector<Handler>& handlers = handlers_[process];
+  while (!handlers.empty()) {
+    const Handler last = handlers.back();
+    handlers.pop_back();
     last.function(last.argument);
   }
 }

@@ -14,16 +14,28 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/program/process_options.hpp"
 #include "sim_clock/world/object_names.hpp"
 
 namespace ltsim {
 namespace {
 
-constexpr const char* variable = "LTSIM_COMMAND";
+/// Of the environment: the command.
+const char* variable_of(LaunchedProgram program) noexcept {
+  return program == LaunchedProgram::whole ? "LTSIM_COMMAND" : "LTSIM_PROCESSES_COMMAND";
+}
+
+/// It lies beside the program that runs now.
+std::string path_of_processes_program() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).replace_filename(processes_program).string();
+}
+
 constexpr char separator = '\x1f';
 
 /// Why the file is no program of ltsim-c++; empty: it is one.
-std::string what_is_wrong_with(const std::string& path) {
+/// @param is_image  it is to be loaded by another one
+std::string what_is_wrong_with(const std::string& path, bool is_image) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return fmt::format("{}: {}", path, strerror(errno));
   struct stat status{};
@@ -43,33 +55,52 @@ std::string what_is_wrong_with(const std::string& path) {
   const bool needs_us = text.find(std::string_view{"\0libltsim.so\0", 13}) != std::string_view::npos;
   munmap(content, bytes);
   if (!is_program) return fmt::format("{}: is no program: a script cannot be looked into", path);
-  if (!needs_us) return fmt::format("{}: was not built with ltsim-cc or ltsim-c++", path);
+  if (!needs_us)
+    return fmt::format("{}: was not built with ltsim-cc or ltsim-c++{}", path, is_image ? " --process" : "");
   return {};
 }
 
 }  // namespace
 
-std::string scenario_name_of(const std::string& program_path) {
-  std::string name = std::filesystem::path{program_path}.filename().string();
+std::string scenario_name_of(const std::vector<std::string>& program) {
+  if (program.front() == processes_program) {
+    const auto options = parse_process_options({program.begin() + 1, program.end()});
+    return options ? options->name() : "";
+  }
+  std::string name = std::filesystem::path{program.front()}.filename().string();
   make_one_word(name);
   return name;
 }
 
 std::string launch_program(const std::vector<std::string>& command, const std::vector<std::string>& program) {
-  if (std::string wrong = what_is_wrong_with(program.front()); !wrong.empty()) return wrong;
+  const bool is_of_processes = program.front() == processes_program;
+  const std::string path = is_of_processes ? path_of_processes_program() : program.front();
+  if (std::string wrong = what_is_wrong_with(path, false); !wrong.empty()) return wrong;
+  if (is_of_processes) {
+    const auto options = parse_process_options({program.begin() + 1, program.end()});
+    if (!options) return options.error();
+    for (const ProcessOptions& process : options->processes) {
+      if (std::string wrong = what_is_wrong_with(process.arguments.front(), true); !wrong.empty())
+        return wrong;
+    }
+  }
   std::string joined;
   for (const std::string& word : command) joined += word + separator;
-  setenv(variable, joined.c_str(), 1);
+  setenv(variable_of(is_of_processes ? LaunchedProgram::processes : LaunchedProgram::whole), joined.c_str(),
+         1);
+  // Room for the thread-locals of images, which are loaded later.
+  if (is_of_processes) setenv("GLIBC_TUNABLES", "glibc.rtld.optional_static_tls=65536", 1);
   // Addresses that are the same in each run: what depends on their order does not differ then.
   personality(static_cast<unsigned long>(personality(0xffffffff)) | ADDR_NO_RANDOMIZE);
   std::vector<char*> arguments;
   for (const std::string& word : program) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  execv(program.front().c_str(), arguments.data());
-  return fmt::format("{}: {}", program.front(), strerror(errno));
+  execv(path.c_str(), arguments.data());
+  return fmt::format("{}: {}", path, strerror(errno));
 }
 
-std::optional<std::vector<std::string>> take_launch_command() {
+std::optional<std::vector<std::string>> take_launch_command(LaunchedProgram program) {
+  const char* const variable = variable_of(program);
   const char* const joined = getenv(variable);
   if (joined == nullptr) return std::nullopt;
   std::vector<std::string> command;

@@ -13,6 +13,7 @@
 
 #include "sim_clock/program/exit_handlers.hpp"
 #include "sim_clock/program/launch.hpp"
+#include "sim_clock/program/processes.hpp"
 #include "sim_clock/program/whole_program.hpp"
 #include "sim_clock/takeover/program_blocks.hpp"
 #include "sim_clock/world/world.hpp"
@@ -24,11 +25,9 @@ using Main = int (*)(int, char**, char**);
 
 Main program_main = nullptr;
 std::optional<std::vector<std::string>> launch_command;
-bool is_before_main = false;  // of a program that was launched with a command
 
 int run_in_world(int count, char** arguments, char** environment) {
   ProgramHeap::serve_outside_tasks(false);
-  is_before_main = false;
   const ProgramStart start{
       .main = program_main, .arguments = {arguments, arguments + count}, .environment = environment};
   return run_whole_program(start, *launch_command);
@@ -67,21 +66,34 @@ extern "C" int __libc_start_main(ltsim::Main main, int count, char** arguments, 
                                  void (*fini)(), void (*rtld_fini)(), void* stack_end) {
   using Start = int (*)(ltsim::Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
   const auto next = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));
-  ltsim::launch_command = ltsim::take_launch_command();
+  ltsim::launch_command = ltsim::take_launch_command(ltsim::LaunchedProgram::whole);
   if (!ltsim::launch_command) return next(main, count, arguments, init, fini, rtld_fini, stack_end);
   if (const auto trouble = ltsim::ProgramMemory::turn_on(); trouble) {
     std::fprintf(stderr, "ltsim: %s\n", trouble->c_str());
     std::exit(3);
   }
   ltsim::program_main = main;
-  ltsim::is_before_main = true;
   ProgramHeap::serve_outside_tasks(true);
   return next(&ltsim::run_in_world, count, arguments, init, fini, rtld_fini, stack_end);
 }
 
+/// main() of ltsim-processes.
+extern "C" int ltsim_run_processes(int count, char** arguments, char** environment) {
+  const auto command = ltsim::take_launch_command(ltsim::LaunchedProgram::processes);
+  if (!command) {
+    std::fputs("ltsim-processes: is run by ltsim: ltsim explore --process IMAGE:ARGUMENTS ...\n", stderr);
+    return 2;
+  }
+  return ltsim::run_processes({arguments + 1, arguments + count}, environment, *command);
+}
+
 extern "C" int __cxa_atexit(void (*function)(void*), void* argument, void* module) {
-  if (ltsim::current_task != nullptr || (ltsim::is_before_main && ltsim::ProgramImage::contains(module))) {
-    ltsim::ExitHandlers::add({function, argument});
+  using ltsim::ProgramImage;
+  const bool is_before_main = ProgramHeap::serves_outside_tasks() && ProgramImage::contains(module);
+  if (ltsim::current_task != nullptr || is_before_main) {
+    const auto process = is_before_main ? static_cast<ltsim::ProcessId>(ProgramImage::image_of(module))
+                                        : ltsim::current_task->process;
+    ltsim::ExitHandlers::add(process, {function, argument});
     return 0;
   }
   using Register = int (*)(void (*)(void*), void*, void*);

@@ -10,19 +10,26 @@
 
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/program/launch.hpp"
+#include "sim_clock/program/process_options.hpp"
 #include "sim_clock/scenario/command.hpp"
 
 namespace ltsim {
 namespace {
 
-/// "ltsim explore ... -- ./program ...": goes on in the program's process.
-void launch_what_follows(const std::vector<std::string>& words) {
+/// "ltsim explore ... -- ./program ...", "ltsim explore ... --process image.so:...": goes on in the process of what is to be run.
+void launch_programs(const std::vector<std::string>& words) {
   const auto separator = std::find(words.begin(), words.end(), "--");
-  if (separator == words.end()) return;
-  if (separator + 1 == words.end()) throw UsageError{"no program follows \"--\""};
   std::vector<std::string> command{words.begin(), separator};
-  const std::vector<std::string> program{separator + 1, words.end()};
-  command.push_back(scenario_name_of(program.front()));
+  std::vector<std::string> program;
+  if (separator != words.end()) {
+    program.assign(separator + 1, words.end());
+    if (program.empty()) throw UsageError{"no program follows \"--\""};
+  } else {
+    program = take_process_options(command);
+    if (program.empty()) return;
+    program.insert(program.begin(), processes_program);
+  }
+  command.push_back(scenario_name_of(program));
   throw UsageError{launch_program(command, program)};  // it has come back: that could not be
 }
 
@@ -42,9 +49,10 @@ int run_command_line(int argc, const char* const* argv) {
   add_minimize_command(app, chosen);
   add_zoo_command(app, chosen);
   add_fuzz_command(app, chosen);
+  app.footer(process_options_help());
   const std::vector<std::string> words{argv, argv + argc};
   try {
-    launch_what_follows(words);
+    launch_programs(words);
     app.parse(argc, argv);
     try {
       return chosen(argv[0]);

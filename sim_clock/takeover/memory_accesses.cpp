@@ -87,10 +87,11 @@ extern "C" void __tsan_write_range(void* p, std::size_t bytes) {
   access_range(p, bytes, OperationKind::write, __builtin_return_address(0));
 }
 
-// Announced too, and of no interest here: virtual table pointers, function entry and exit, the runtime's
-// start.
+// Announced too, and of no interest here: virtual table pointers, function entry and exit.
 extern "C" void __tsan_vptr_update(void** /*vptr*/, void* /*value*/) {}
 extern "C" void __tsan_vptr_read(void** /*vptr*/) {}
 extern "C" void __tsan_func_entry(void* /*caller*/) {}
 extern "C" void __tsan_func_exit() {}
-extern "C" void __tsan_init() {}
+
+/// The runtime's start: each object of an image calls it before anything else in it runs.
+extern "C" void __tsan_init() { ltsim::ProgramImage::begins(__builtin_return_address(0)); }

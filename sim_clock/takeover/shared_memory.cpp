@@ -88,12 +88,6 @@ extern "C" void* mmap64(void* address, std::size_t bytes, int protection, int fl
   return mmap(address, bytes, protection, flags, descriptor, offset);
 }
 
-extern "C" int dup(int descriptor) noexcept {
-  if (is_simulated(descriptor))
-    current_task->world->unsupported("dup of a shared memory object's descriptor");
-  return LTSIM_NEXT(dup)(descriptor);
-}
-
 extern "C" int fchmod(int descriptor, mode_t mode) noexcept {
   if (!is_simulated(descriptor)) return LTSIM_NEXT(fchmod)(descriptor, mode);
   return 0;  // the simulated world has one user
@@ -122,7 +116,10 @@ extern "C" int msync(void* address, std::size_t bytes, int flags) {
 }
 
 extern "C" int close(int descriptor) {
-  if (!Segments::is_descriptor(descriptor)) return LTSIM_NEXT(close)(descriptor);
+  if (!Segments::is_descriptor(descriptor)) {
+    if (current_task != nullptr) current_task->world->descriptors().closed(descriptor);
+    return LTSIM_NEXT(close)(descriptor);
+  }
   if (current_task == nullptr) return 0;
   return current_task->world->segments().close(descriptor);
 }

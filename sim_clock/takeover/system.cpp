@@ -21,12 +21,11 @@ using ltsim::current_task;
 
 namespace {
 
-constexpr pid_t first_process_id = 1000;
 constexpr int processors = 2;
 
 /// What Linux would call the thread's id.
 pid_t task_number() noexcept {
-  return first_process_id + 100 * (current_task->process + 1) + current_task->id;
+  return ltsim::World::first_system_id + 100 * (current_task->process + 1) + current_task->id;
 }
 
 /// futex(2) as std::atomic::wait, std::counting_semaphore and the guards of static variables use it.
@@ -61,9 +60,7 @@ long futex(std::uint32_t* word, int operation, std::uint32_t value, const timesp
 
 extern "C" pid_t getpid() noexcept {
   if (current_task == nullptr) return LTSIM_NEXT(getpid)();
-  // A process that was started again is another one.
-  const unsigned life = current_task->world->incarnation(current_task->process);
-  return first_process_id + current_task->process + static_cast<pid_t>((life - 1) * ltsim::processes_max);
+  return current_task->world->system_id(current_task->process);
 }
 
 extern "C" pid_t gettid() noexcept {

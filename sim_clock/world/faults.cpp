@@ -78,8 +78,7 @@ void Faults::crash(ProcessId id) {
   world_.note([&] { return fmt::format("fault: {} is killed", process.name()); });
   --left(FaultKind::crash);
   --crashes_[id].times;
-  world_.scheduler().kill_tasks(id);
-  world_.segments().process_died(id);
+  world_.close_down(id);
   process.died(crashes_[id].restart_after);
 }
 

@@ -114,6 +114,10 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "thread_tryjoin";
     case OperationKind::thread_timedjoin:
       return "thread_timedjoin";
+    case OperationKind::signal_wait:
+      return "signal_wait";
+    case OperationKind::signal_send:
+      return "signal_send";
   }
   return "?";
 }
@@ -131,6 +135,7 @@ bool changes_what_others_see(OperationKind kind) noexcept {
     case OperationKind::thread_create:
     case OperationKind::shm_unlink:
     case OperationKind::shm_resize:
+    case OperationKind::signal_send:
       return true;
     default:
       return false;

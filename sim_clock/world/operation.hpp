@@ -64,6 +64,8 @@ enum class OperationKind : std::uint8_t {
   static_init,
   thread_tryjoin,
   thread_timedjoin,
+  signal_wait,
+  signal_send,
 };
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
@@ -79,7 +81,7 @@ enum class OperationKind : std::uint8_t {
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
 [[nodiscard]] constexpr bool can_be_polling(OperationKind kind) noexcept {
   // Asked at each scheduling point.
-  static_assert(static_cast<unsigned>(OperationKind::thread_timedjoin) < 64, "the last kind has a bit, too");
+  static_assert(static_cast<unsigned>(OperationKind::signal_send) < 64, "the last kind has a bit, too");
   constexpr std::uint64_t polling = [] {
     std::uint64_t bits = 0;
     for (const OperationKind looks :

@@ -112,4 +112,15 @@ void ProgramHeap::restore() {
   counts_[tasks_max] = kept_count_;
 }
 
+void ProgramHeap::restore_image(std::size_t image) {
+  const ImagePart begin = image == 0 ? ImagePart{} : images_[image - 1];
+  const ImagePart& end = images_[image];
+  for (std::size_t i = begin.blocks_end; i < end.blocks_end; ++i) {
+    blocks_[i] = kept_blocks_[i];
+    mark(blocks_[i]);
+  }
+  std::memcpy(address_of(static_cast<std::uint32_t>(begin.bytes_end)), &kept_bytes_[begin.bytes_end],
+              end.bytes_end - begin.bytes_end);
+}
+
 }  // namespace ltsim

@@ -51,6 +51,8 @@ class ProgramHeap {
            ProgramImage::site_of(caller) != 0;
   }
   static void serve_outside_tasks(bool yes) noexcept { serves_outside_tasks_ = yes; }
+  /// Whether constructors of the program run, before main().
+  [[nodiscard]] static bool serves_outside_tasks() noexcept { return serves_outside_tasks_; }
 
   /// @param alignment  a power of two
   /// @param site       as in Operation: who asks
@@ -82,6 +84,10 @@ class ProgramHeap {
   /// What there is now is what each execution begins with.
   static void keep_for_each_execution();
   static void restore();
+  /// What was allocated since the last call belongs to the image of the next number, from 0.
+  static void end_of_image() { images_.push_back({.blocks_end = blocks_.size(), .bytes_end = used_bytes_}); }
+  /// As restore(), for the blocks of one image: its process begins again.
+  static void restore_image(std::size_t image);
 
  private:
   // Of granules: 1 to granule_bytes: so many of its bytes from its begin on belong to a block.
@@ -89,6 +95,12 @@ class ProgramHeap {
   static constexpr std::uint8_t mark_freed = 0xff;
   /// Between two blocks at least: what is written a little behind a block is seen.
   static constexpr std::size_t gap_bytes = granule_bytes;
+
+  /// Of what was allocated for an image while it was loaded; it begins where that of the image before ends.
+  struct ImagePart {
+    std::size_t blocks_end = 0;
+    std::size_t bytes_end = 0;
+  };
 
   static void mark(const Block& block) noexcept;
   [[nodiscard]] static Access check_slowly(std::size_t offset, std::size_t bytes) noexcept;
@@ -102,6 +114,7 @@ class ProgramHeap {
   static inline std::vector<std::byte> kept_bytes_;
   static inline std::vector<Block> kept_blocks_;
   static inline std::uint32_t kept_count_ = 0;
+  static inline std::vector<ImagePart> images_;
 };
 
 }  // namespace ltsim

@@ -1,49 +1,127 @@
-// Where the program lies in memory: the code under test, and its variables.
+// Where the code under test lies in memory, and its variables: the program that was started, or the images that were loaded to
+// be the processes of one world. Libraries that they load are none of it.
 //
-// The program is what was started, not a library that it loads: its image begins at another address in each run, so places in it
-// are counted from there.
+// An image begins at another address in each run, so places are counted from where it begins; those of a second image go on
+// where those of the first end.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+
+#include "sim_clock/world/task.hpp"
+
+struct dl_phdr_info;
 
 namespace ltsim {
 
 class ProgramImage {
  public:
+  /// What each has that is not in the hot path.
+  struct File {
+    std::string path;  ///< with its symbols and debug information
+    std::uintptr_t loaded_at;
+  };
+
   /// @param return_address  of a call made by the code
-  /// @return  bytes from the image's begin; 0 for code of a shared library, whose place differs from run to run
+  /// @return  its place, from 1; 0 for code of a shared library, whose place differs from run to run
   [[nodiscard]] static std::uint32_t site_of(const void* return_address) noexcept {
-    const std::uintptr_t site = reinterpret_cast<std::uintptr_t>(return_address) - begin_;
-    return site < code_bytes_ ? static_cast<std::uint32_t>(site) : 0;
+    for (const Image& image : images()) {
+      const std::uintptr_t offset = reinterpret_cast<std::uintptr_t>(return_address) - image.begin;
+      if (offset < image.code_bytes) return image.sites_begin + static_cast<std::uint32_t>(offset);
+    }
+    return 0;
   }
 
   [[nodiscard]] static bool contains(const void* address) noexcept {
-    return reinterpret_cast<std::uintptr_t>(address) - begin_ < bytes_;
+    const auto all = images();
+    return std::any_of(all.begin(), all.end(), [&](const Image& image) {
+      return reinterpret_cast<std::uintptr_t>(address) - image.begin < image.bytes;
+    });
   }
 
-  /// Where the program's headers say that the site is: what debug information and symbols count in.
-  [[nodiscard]] static std::uintptr_t linked_address_of(std::uint32_t site) noexcept {
-    return begin_ + site - loaded_at_;
+  [[nodiscard]] static std::size_t count() noexcept { return count_; }
+  /// @param address  one that an image contains
+  [[nodiscard]] static std::size_t image_of(const void* address) noexcept {
+    std::size_t index = 0;
+    while (index + 1 < count_ &&
+           reinterpret_cast<std::uintptr_t>(address) - images_[index].begin >= images_[index].bytes)
+      ++index;
+    return index;
   }
-  [[nodiscard]] static std::uintptr_t loaded_at() noexcept { return loaded_at_; }
+  [[nodiscard]] static const File& file(std::size_t index) noexcept { return files_[index]; }
 
-  /// Those that can change while the program runs.
-  [[nodiscard]] static std::span<std::byte> variables() noexcept {
-    return {reinterpret_cast<std::byte*>(variables_begin_), variables_bytes_};
+  struct Site {
+    std::size_t image = 0;
+    std::uintptr_t linked_address =
+        0;  ///< where the image's headers say that it is: what debug information counts in
+  };
+  /// @param site  from site_of(), not 0
+  [[nodiscard]] static Site find_site(std::uint32_t site) noexcept;
+
+  /// Those of one image that can change while the program runs.
+  [[nodiscard]] static std::span<std::byte> variables(std::size_t index) noexcept {
+    const Image& image = images_[index];
+    return {reinterpret_cast<std::byte*>(image.variables_begin), image.variables_bytes};
+  }
+  /// Where the variables of an image begin among those of all.
+  [[nodiscard]] static std::uint32_t first_variable(std::size_t index) noexcept {
+    return images_[index].first_variable;
+  }
+  /// Of all images.
+  [[nodiscard]] static std::size_t variables_bytes() noexcept {
+    return count_ == 0 ? 0 : images_[count_ - 1].first_variable + images_[count_ - 1].variables_bytes;
   }
 
-  /// Looks them up; until then no address lies in the image. Before anything of the program runs.
-  static void find() noexcept;
+  static constexpr std::uint32_t no_variable = ~std::uint32_t{0};
+  /// @return  the byte's place among the variables of all images; no_variable: it is none
+  [[nodiscard]] static std::uint32_t variable_at(const volatile void* address) noexcept {
+    for (const Image& image : images()) {
+      const std::uintptr_t offset = reinterpret_cast<std::uintptr_t>(address) - image.variables_begin;
+      if (offset < image.variables_bytes) return image.first_variable + static_cast<std::uint32_t>(offset);
+    }
+    return no_variable;
+  }
+  /// Which image's the variable is.
+  /// @param place  less than variables_bytes()
+  [[nodiscard]] static std::size_t image_of_variable(std::uint32_t place) noexcept;
+
+  /// Adds what was started; until then no address lies in an image. Before anything of the program runs.
+  static void add_program();
+  /// From here on no image is known: what was started is not the code under test.
+  static void forget_program() noexcept { count_ = 0; }
+  /// An image of that file will be loaded next: it is added when code of it begins to run.
+  static void expect(const std::string& path) { expected_ = path; }
+  /// Code that was compiled to be looked into runs for the first time.
+  /// @param inside  an address in its image
+  static void begins(const void* inside) {
+    if (!expected_.empty() && !contains(inside)) add_expected(inside);
+  }
+
+  static constexpr std::size_t images_max = processes_max;
 
  private:
-  static inline std::uintptr_t begin_ = 0;
-  static inline std::uintptr_t bytes_ = 0;
-  static inline std::uintptr_t code_bytes_ = 0;
-  static inline std::uintptr_t loaded_at_ = 0;
-  static inline std::uintptr_t variables_begin_ = 0;
-  static inline std::size_t variables_bytes_ = 0;
+  struct Image {
+    std::uintptr_t begin;
+    std::uintptr_t bytes;
+    std::uintptr_t code_bytes;
+    std::uintptr_t variables_begin;
+    std::size_t variables_bytes;
+    std::uint32_t sites_begin;
+    std::uint32_t first_variable;
+  };
+
+  [[nodiscard]] static std::span<const Image> images() noexcept { return {images_.data(), count_}; }
+  static void add_expected(const void* inside);
+  static void add(const dl_phdr_info& module, const std::string& path);
+
+  static inline std::array<Image, images_max> images_{};
+  constinit static inline std::array<File, images_max> files_{};
+  static inline std::size_t count_ = 0;
+  constinit static inline std::string expected_{};  // the path; empty: none
 };
 
 }  // namespace ltsim

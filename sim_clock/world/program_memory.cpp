@@ -39,9 +39,9 @@ std::string_view verb(OperationKind kind) noexcept {
 }  // namespace
 
 std::optional<std::string> ProgramMemory::turn_on() {
-  if (ProgramImage::variables().size() > variables_bytes_max)
+  if (ProgramImage::variables_bytes() > variables_bytes_max)
     return fmt::format("the program has {} bytes of variables; more than {} cannot be followed",
-                       ProgramImage::variables().size(), variables_bytes_max);
+                       ProgramImage::variables_bytes(), variables_bytes_max);
   ProgramHeap::begin_program();
   watch_all_accesses();
   return std::nullopt;
@@ -49,11 +49,8 @@ std::optional<std::string> ProgramMemory::turn_on() {
 
 std::optional<ProgramMemory::Place> ProgramMemory::find(const volatile void* address) noexcept {
   const std::uintptr_t at = number_of(address);
-  const auto variables = ProgramImage::variables();
-  if (const std::uintptr_t offset = at - number_of(variables.data()); offset < variables.size()) {
-    const auto in_variables = static_cast<std::uint32_t>(offset);
-    return Place{variables_object, in_variables, variables_first + in_variables};
-  }
+  if (const std::uint32_t offset = ProgramImage::variable_at(address); offset != ProgramImage::no_variable)
+    return Place{variables_object, offset, variables_first + offset};
   if (ProgramHeap::contains(address)) {
     const std::uint32_t offset = ProgramHeap::offset_of(address);
     return Place{heap_object, offset, heap_first + offset};
@@ -84,7 +81,7 @@ void ProgramMemory::access(const volatile void* address, const Place& place, std
                       .site = site};
   if (place.object == heap_object) check_heap(address, bytes, kind, site);
   Scheduler& scheduler = world_.scheduler();
-  if (scheduler.tasks_count() == 1) return;
+  if (!world_.process(current_task->process).has_made_threads()) return;
   const bool is_atomic = kind != OperationKind::read && kind != OperationKind::write;
   const bool is_on_own_stack = place.object == stacks_object &&
                                current_task->storage->slot() == place.offset / TaskStorage::stack_bytes;
@@ -127,7 +124,7 @@ void ProgramMemory::free(void* address, const void* caller) noexcept {
            site);
   block = ProgramHeap::block_that_begins_at(address);  // others ran, and may have allocated
   if (block->is_freed) fail_to_free(address);
-  if (world_.checks().on() && world_.scheduler().tasks_count() != 1) {
+  if (world_.checks().on() && world_.process(current_task->process).has_made_threads()) {
     for (std::uint32_t at = granule_bytes; at < block->bytes; at += granule_bytes) {
       world_.checks().accessed(
           {.task = current_task->id,
@@ -219,7 +216,8 @@ void ProgramMemory::check_heap(const volatile void* address, std::size_t bytes, 
 std::uint64_t ProgramMemory::value_at(const Operation& operation) noexcept {
   const std::byte* at = nullptr;
   if (operation.object == variables_object) {
-    at = ProgramImage::variables().data() + operation.offset;
+    const std::size_t image = ProgramImage::image_of_variable(operation.offset);
+    at = ProgramImage::variables(image).data() + (operation.offset - ProgramImage::first_variable(image));
   } else if (operation.object == heap_object) {
     at = static_cast<const std::byte*>(ProgramHeap::address_of(operation.offset));
   } else {

@@ -1,7 +1,7 @@
 // The memory of a whole program as a thing that its tasks share: its variables, its heap, and the stacks of its tasks.
 //
 // Off, for scenarios: there only segments are shared. On, each access to it is a scheduling point, but
-//   - while one task has ever been made: nobody is there who could notice;
+//   - while its process has made no thread: nobody is there who could notice;
 //   - a plain one to the task's own stack: what others do there at the same time is a race, and found as one.
 // Accesses to the heap are checked against its blocks.
 #pragma once

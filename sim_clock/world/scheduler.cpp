@@ -96,6 +96,7 @@ Task& Scheduler::create_task(ProcessId process, std::string_view name, std::func
   task.polls.reset();
   task.repeats.reset();
   task.body = std::move(body);
+  task.argument = nullptr;
   task.result = nullptr;
   task.body_frame = nullptr;
   task.traits = {};
@@ -433,6 +434,7 @@ void Scheduler::nobody_can_run() noexcept {
   if (!idle_checks_.empty() && stalled_count_ == 0) {
     const GhostScope ghost;
     for (const auto& check : idle_checks_) check();
+    if (runnable_count_ != 0) return;  // it has sent somebody a signal
   }
   if (!clock_.any_armed()) {
     const GhostScope ghost;

@@ -62,7 +62,8 @@ struct Task {
   std::string name;               ///< "process/task"
 
   std::function<void()> body;
-  void* result = nullptr;  ///< what a pthread start routine returned
+  void* argument = nullptr;  ///< of a pthread start routine
+  void* result = nullptr;    ///< what it returned
 
   struct ThreadLocalDestructor {
     void (*destroy)(void*);

@@ -48,6 +48,7 @@ Task& Threads::create_task(pthread_t* thread, const pthread_attr_t* attributes) 
   Task& task =
       scheduler.create_task(process, fmt::format("thread-{}", world_.next_thread_number(process)), {});
   world_.checks().follows(task.id, current_task->id);
+  world_.signals().inherit_mask(task.id, current_task->id);
   task.detached = wanted.detached;
   scheduler.set_priority(task, wanted.priority, wanted.time_sharing);
   task.traits.name = current_task->traits.name;
@@ -59,12 +60,14 @@ Task& Threads::create_task(pthread_t* thread, const pthread_attr_t* attributes) 
 int Threads::create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                     void* argument) noexcept {
   Task& task = create_task(thread, attributes);
+  task.argument = argument;
   task.body = [&task, start, argument] { task.result = start(argument); };
   return 0;
 }
 
 int Threads::create(pthread_t* thread, int (*start)(void*), void* argument) noexcept {
   Task& task = create_task(thread, nullptr);
+  task.argument = argument;
   task.body = [&task, start, argument] {
     task.result = reinterpret_cast<void*>(static_cast<std::intptr_t>(start(argument)));
   };

@@ -191,6 +191,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   static_guards_.reset();
   thread_specific_.reset();
   random_numbers_.reset();
+  signals_.reset();
+  descriptors_.reset();
   faults_.reset();
   damages_.reset();
   fetches_.reset();
@@ -209,6 +211,7 @@ void World::add_state(StateHash& hash) const noexcept {
   static_guards_.add_state(hash);
   thread_specific_.add_state(hash);
   random_numbers_.add_state(hash);
+  signals_.add_state(hash);
   faults_.add_state(hash);
   damages_.add_state(hash);
   fetches_.add_state(hash);
@@ -233,6 +236,22 @@ void World::set_memory(Memory memory) {
   }
   weak_.turn_on();
   checks_.follow_order();
+}
+
+void World::close_down(ProcessId id) noexcept {
+  scheduler_.kill_tasks(id);
+  segments_.process_died(id);
+  descriptors_.process_died(id);
+  signals_.process_died(id);
+}
+
+void World::end_process(ProcessId id) noexcept {
+  {
+    const GhostScope ghost;
+    note([&] { return fmt::format("{} ends", process_name(id)); });
+    close_down(id);
+  }
+  if (current_task != nullptr && current_task->process == id) scheduler_.leave_killed();
 }
 
 void World::unsupported(std::string what) {

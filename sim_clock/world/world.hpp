@@ -31,6 +31,7 @@
 #include "sim_clock/clock/deadline.hpp"
 #include "sim_clock/world/barriers.hpp"
 #include "sim_clock/world/damages.hpp"
+#include "sim_clock/world/descriptors.hpp"
 #include "sim_clock/world/faults.hpp"
 #include "sim_clock/world/memory_model.hpp"
 #include "sim_clock/world/mutexes.hpp"
@@ -41,6 +42,7 @@
 #include "sim_clock/world/scheduler.hpp"
 #include "sim_clock/world/segments.hpp"
 #include "sim_clock/world/semaphores.hpp"
+#include "sim_clock/world/signals.hpp"
 #include "sim_clock/world/spin_locks.hpp"
 #include "sim_clock/world/static_guards.hpp"
 #include "sim_clock/world/thread_specific.hpp"
@@ -74,6 +76,9 @@ class Process {
   [[nodiscard]] unsigned crashes() const noexcept { return crashes_; }
   /// Some task of it has not ended, and it is not dead or waiting to be started again.
   [[nodiscard]] bool is_running() const noexcept;
+
+  /// In this life.
+  [[nodiscard]] bool has_made_threads() const noexcept { return threads_created_count_ != 0; }
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] ProcessId id() const noexcept { return id_; }
@@ -321,7 +326,15 @@ class World {
   [[nodiscard]] Faults& faults() noexcept { return faults_; }
   [[nodiscard]] const Faults& faults() const noexcept { return faults_; }
   [[nodiscard]] Damages& damages() noexcept { return damages_; }
+  [[nodiscard]] Signals& signals() noexcept { return signals_; }
+  [[nodiscard]] Descriptors& descriptors() noexcept { return descriptors_; }
   [[nodiscard]] WholeState& whole_state() noexcept { return whole_state_; }
+
+  /// What getpid(2) says in a process's present life: one that was started again is another one.
+  [[nodiscard]] int system_id(ProcessId id) const noexcept {
+    return first_system_id + id + static_cast<int>((incarnation(id) - 1) * processes_max);
+  }
+  static constexpr int first_system_id = 1000;
 
   [[nodiscard]] std::size_t processes_count() const noexcept { return processes_count_; }
   [[nodiscard]] Process& process(ProcessId id) noexcept { return *processes_[id]; }
@@ -359,6 +372,13 @@ class World {
     scheduler_.point(operation);
     if (ProgramMemory::is_on()) program_memory_.check_object(object, sizeof *object, operation.kind);
   }
+
+  /// The process ends with all its tasks, of its own accord or by a signal, and does not start again. Does not return if the running
+  /// task is among them.
+  void end_process(ProcessId id) noexcept;
+  /// Nothing of the process runs any more, and what the system gave it is taken back. If the running task is among its own, that runs
+  /// on until it leaves the scheduler.
+  void close_down(ProcessId id) noexcept;
 
   /// The code under test called something that this world does not simulate. Ends the execution.
   void unsupported(std::string what);
@@ -411,6 +431,8 @@ class World {
   StaticGuards static_guards_{*this};
   ThreadSpecific thread_specific_;
   RandomNumbers random_numbers_;
+  Signals signals_{*this};
+  Descriptors descriptors_;
   std::vector<std::unique_ptr<Process>>
       processes_;  // pooled; the first processes_count_ belong to this execution
   std::size_t processes_count_ = 0;

@@ -309,6 +309,83 @@ TEST_F(ProgramsTest, are_told_of_a_block_that_is_freed_while_a_thread_stands_bef
       << result.output;
 }
 
+TEST_F(ProgramsTest, may_exit_before_a_detached_thread_has_begun) {
+  build("p.cpp", R"(
+    #include <string>
+    #include <thread>
+    int main() {
+      std::thread{[text = std::string(100, 'x')] {}}.detach();
+    })");
+  const Result result = ltsim("explore --executions 100 -- ./p");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(ProgramsTest, wait_for_signals_and_may_ignore_them_but_have_no_handlers) {
+  build("p.cpp", R"(
+    #include <errno.h>
+    #include <pthread.h>
+    #include <signal.h>
+    #include <unistd.h>
+    #include <thread>
+    int main() {
+      if (signal(SIGPIPE, SIG_IGN) != SIG_DFL || signal(SIGPIPE, SIG_IGN) != SIG_IGN) return 3;
+      if (kill(getpid(), SIGPIPE) != 0 || signal(SIGKILL, SIG_IGN) != SIG_ERR || errno != EINVAL) return 4;
+      sigset_t set;
+      sigset_t before;
+      sigemptyset(&set);
+      sigaddset(&set, SIGUSR2);
+      sigaddset(&set, SIGUSR1);
+      pthread_sigmask(SIG_BLOCK, &set, nullptr);
+      pthread_sigmask(SIG_BLOCK, nullptr, &before);
+      if (sigismember(&before, SIGUSR1) != 1 || sigismember(&before, SIGTERM) != 0) return 5;
+      std::thread{[] {
+        sigset_t mine;
+        pthread_sigmask(SIG_BLOCK, nullptr, &mine);
+        if (sigismember(&mine, SIGUSR1) == 1) kill(getpid(), SIGUSR2);
+      }}.join();
+      kill(getpid(), SIGUSR1);
+      int signal = 0;
+      if (sigwait(&set, &signal) != 0 || signal != SIGUSR1) return 6;  // the lowest one first
+      siginfo_t told;
+      if (sigwaitinfo(&set, &told) != SIGUSR2 || told.si_signo != SIGUSR2) return 7;
+      const timespec pause{.tv_sec = 0, .tv_nsec = 1'000'000};
+      if (sigtimedwait(&set, nullptr, &pause) != -1 || errno != EAGAIN) return 8;
+    })");
+  const Result result = ltsim("explore --executions 100 -- ./p");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  build("p.cpp", R"(
+    #include <signal.h>
+    #include <unistd.h>
+    int main(int count, char**) {
+      if (count == 1) kill(getpid(), SIGTERM);
+      signal(SIGTERM, [](int) {});
+    })");
+  const Result ended = ltsim("explore -- ./p");
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_TRUE(contains(ended, "crash: program was ended by signal 15, Terminated")) << ended.output;
+  const Result refused = ltsim("explore -- ./p handler");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(contains(refused,
+                       "program/main called signal with a handler, which ltsim does not simulate: block "
+                       "the signal and wait for it with sigwait(3)"))
+      << refused.output;
+}
+
+TEST_F(ProgramsTest, leave_no_descriptor_open_for_the_next_execution) {
+  build("p.cpp", R"(
+    #include <fcntl.h>
+    #include <stdio.h>
+    #include <unistd.h>
+    int main() {
+      const int file = open("/dev/null", O_RDONLY);
+      if (file > 100 || openat(AT_FDCWD, "/dev/null", O_RDONLY) < 0 || dup(file) < 0 ||
+          fcntl(file, F_DUPFD_CLOEXEC, 0) < 0 || fopen("/dev/null", "r") == nullptr)
+        return 3;
+    })");
+  const Result result = ltsim("explore --executions 300 -- ./p");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
 TEST_F(ProgramsTest, are_refused_with_the_reason_where_they_cannot_be_looked_into) {
   write("script", "#!/bin/sh\nexit 0\n");
   write("empty", "");

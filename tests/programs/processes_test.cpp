@@ -1,0 +1,324 @@
+// Whole programs as the processes of one world: images that ltsim-c++ --process has built, loaded side by side.
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/shell.hpp"
+
+namespace {
+
+using Result = test_support::ShellResult;
+
+class ProcessesTest : public testing::Test {
+ protected:
+  [[nodiscard]] Result shell(const std::string& line) const {
+    return test_support::run_in(folder_.path(), line);
+  }
+  [[nodiscard]] Result ltsim(const std::string& arguments) const {
+    return shell(LTSIM_PROGRAM " " + arguments);
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream{folder_.path() / name} << text;
+  }
+  /// NAME.so from this source.
+  void build(const std::string& name, const std::string& source) const {
+    write(name + ".cpp", source);
+    std::string line = "LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " --process -std=c++20 -O1 ";
+    const Result built = shell(line.append(name).append(".cpp -o ").append(name).append(".so"));
+    ASSERT_EQ(built.exit_code, 0) << built.output;
+  }
+  [[nodiscard]] std::string read(const char* name) const {
+    std::ifstream file{folder_.path() / name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+  [[nodiscard]] static bool contains(const std::string& text, std::string_view what) {
+    return text.find(what) != std::string::npos;
+  }
+  /// What the processes write in an execution without any deviation, and how that ends.
+  [[nodiscard]] Result run_once(const std::string& scenario, const std::string& arguments) const {
+    write("once.schedule", "ltsim schedule 1\nscenario  " + scenario +
+                               "\nmemory    sc\noutcome   passed\nprogram   \"ltsim-processes\"\n" +
+                               arguments);
+    return ltsim("replay once.schedule");
+  }
+
+  test_support::TemporaryFolder folder_;
+};
+
+/// What both sides of a mailbox in shared memory begin with.
+constexpr const char* mailbox = R"(
+  #include <fcntl.h>
+  #include <pthread.h>
+  #include <semaphore.h>
+  #include <signal.h>
+  #include <sys/mman.h>
+  #include <unistd.h>
+  #include <cstdio>
+  #include <cstdlib>
+  #include <cstring>
+  #include <string>
+  #include <thread>
+  struct Mailbox { int request; int answer; int lives; };
+  static sem_t* asked = nullptr;
+  static sem_t* answered = nullptr;
+  static Mailbox* attach() {
+    asked = sem_open("/asked", O_CREAT, 0600, 0);
+    answered = sem_open("/answered", O_CREAT, 0600, 0);
+    const int file = shm_open("/mailbox", O_CREAT | O_RDWR, 0600);
+    if (ftruncate(file, sizeof(Mailbox)) != 0) std::abort();
+    return static_cast<Mailbox*>(
+        mmap(nullptr, sizeof(Mailbox), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
+  }
+  static int runs = 0;                                             // of this image, and of this life of it
+  static std::string* const kept = new std::string(100, 'x');      // on the heap, before main()
+  static struct Last { ~Last() { std::puts(runs == 1 ? "goodbye" : "no goodbye"); } } last;
+)";
+
+/// Asks, and expects twice its argument.
+constexpr const char* kernel = R"(
+  int main(int count, char** arguments) {
+    if (++runs != 1 || kept->size() != 100) return 3;
+    kept->resize(10);
+    Mailbox* const box = attach();
+    box->request = count > 1 ? std::atoi(arguments[1]) : 1;
+    sem_post(asked);
+    sem_wait(answered);
+    std::printf("%s: %d\n", std::strrchr(arguments[0], '/') + 1, box->answer);
+    return box->answer == 2 * box->request ? 0 : 1;
+  })";
+
+/// A thread answers once; the main one waits to be stopped.
+constexpr const char* emulator = R"(
+  int main() {
+    if (++runs != 1 || kept->size() != 100) return 3;
+    kept->resize(20);
+    sigset_t stop;
+    sigemptyset(&stop);
+    sigaddset(&stop, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &stop, nullptr);
+    Mailbox* const box = attach();
+    std::thread server{[=] {
+      sem_wait(asked);
+      box->answer = 2 * box->request;
+      sem_post(answered);
+    }};
+    int signal = 0;
+    sigwait(&stop, &signal);
+    std::printf("stopped by %d\n", signal);
+    server.join();
+    return 0;
+  })";
+
+TEST_F(ProcessesTest, have_variables_and_a_heap_of_their_own_and_begin_each_execution_alike) {
+  build("kernel", std::string{mailbox} + kernel);
+  build("emulator", std::string{mailbox} + emulator);
+  const Result result = ltsim("explore --executions 300 --service ./emulator.so --process ./kernel.so:21");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_TRUE(contains(result.output, "emulator+kernel  nothing found: 300 executions")) << result.output;
+}
+
+TEST_F(ProcessesTest, are_services_that_are_waited_for_and_stopped_or_processes_that_end) {
+  build("kernel", std::string{mailbox} + kernel);
+  build("emulator", std::string{mailbox} + emulator);
+  const Result once = run_once("emulator+kernel", R"(argument  "--service=./emulator.so"
+argument  "--process=./kernel.so:21"
+)");
+  EXPECT_EQ(once.exit_code, 0) << once.output;
+  EXPECT_TRUE(contains(once.output, "kernel.so: 42\ngoodbye\nstopped by 15\ngoodbye\n")) << once.output;
+  const Result never_stopped = ltsim("explore --process ./emulator.so --process ./kernel.so:21");
+  EXPECT_EQ(never_stopped.exit_code, 1);
+  EXPECT_TRUE(contains(never_stopped.output, "deadlock: emulator/main waits in signal_wait"))
+      << never_stopped.output;
+  build("polls", R"(
+    #include <unistd.h>
+    int main() {
+      for (;;) usleep(1'000'000);
+    })");
+  const Result never_ready = ltsim("explore --service ./polls.so --process ./kernel.so");
+  EXPECT_EQ(never_ready.exit_code, 3);
+  EXPECT_TRUE(contains(never_ready.output, "a service has not waited for SIGTERM within 60 s"))
+      << never_ready.output;
+}
+
+TEST_F(ProcessesTest, of_one_image_are_kept_apart) {
+  build("kernel", std::string{mailbox} + kernel);
+  build("emulator", std::string{mailbox} + emulator);
+  // The emulator answers once.
+  const Result result = ltsim(
+      "explore --executions 100 --keep-going --service ./emulator.so --process ./kernel.so:21 --process "
+      "./kernel.so:4");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(
+      contains(result.output, "kernel-2/main waits in sem_wait answered, and nobody is left to post it"))
+      << result.output;
+  EXPECT_FALSE(contains(result.output, "status 3")) << result.output;
+}
+
+TEST_F(ProcessesTest, that_are_killed_begin_again_as_new) {
+  build("kernel", std::string{mailbox} + kernel);
+  build("emulator", std::string{mailbox} + R"(
+    int main() {
+      if (++runs != 1 || kept->size() != 100) return 3;
+      kept->resize(20);
+      Mailbox* const box = attach();
+      std::thread{[] {}}.join();
+      sem_wait(asked);
+      ++box->lives;
+      if (box->lives == 2) return 7;
+      sem_post(asked);
+      sem_wait(answered);
+      sem_wait(asked);
+      return 0;
+    })");
+  // In its second life it comes by, unless its memory were that of the first.
+  const Result result = ltsim(
+      "explore --executions 2000 --process ./emulator.so --process ./kernel.so:21 "
+      "--exit-status 0,1 --crash emulator:5 --keep-going");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.output, "exit: emulator ended with status 7")) << result.output;
+  EXPECT_FALSE(contains(result.output, "status 3")) << result.output;
+}
+
+TEST_F(ProcessesTest, that_are_killed_let_go_of_the_locks_of_their_files) {
+  build("keeper", R"(
+    #include <fcntl.h>
+    #include <unistd.h>
+    int main() {
+      const int file = open("lock", O_RDWR | O_CREAT, 0600);
+      if (file > 60) return 4;  // those of earlier executions are still open
+      struct flock whole = {};
+      whole.l_type = F_WRLCK;
+      if (fcntl(file, F_OFD_SETLK, &whole) != 0) return 5;
+      usleep(1000);
+      return 0;
+    })");
+  const Result alone = ltsim("explore --executions 200 --process ./keeper.so --crash keeper:1 --keep-going");
+  EXPECT_EQ(alone.exit_code, 0) << alone.output;
+  const Result two =
+      ltsim("explore --executions 200 --exit-status 0,4 --process ./keeper.so --process ./keeper.so");
+  EXPECT_EQ(two.exit_code, 1);
+  EXPECT_TRUE(contains(two.output, "exit: keeper-2 ended with status 5")) << two.output;
+}
+
+TEST_F(ProcessesTest, send_each_other_signals) {
+  build("waiter", R"(
+    #include <signal.h>
+    #include <stdio.h>
+    #include <time.h>
+    int main() {
+      sigset_t set;
+      sigemptyset(&set);
+      sigaddset(&set, SIGUSR1);
+      sigprocmask(SIG_BLOCK, &set, nullptr);
+      const timespec pause{.tv_sec = 5, .tv_nsec = 0};
+      siginfo_t told;
+      const int signal = sigtimedwait(&set, &told, &pause);
+      if (signal == -1) return 4;
+      printf("got %d\n", told.si_signo);
+      return signal == SIGUSR1 ? 0 : 5;
+    })");
+  build("sender", R"(
+    #include <errno.h>
+    #include <signal.h>
+    #include <unistd.h>
+    int main() {
+      if (kill(1234, SIGUSR1) != -1 || errno != ESRCH) return 6;
+      if (kill(getpid(), 0) != 0) return 7;
+      kill(getpid() - 1, SIGUSR1);
+      return 0;
+    })");
+  const Result once = run_once("waiter+sender", R"(argument  "--process=./waiter.so"
+argument  "--process=./sender.so"
+)");
+  EXPECT_EQ(once.exit_code, 0) << once.output;
+  EXPECT_TRUE(contains(once.output, "got 10\n")) << once.output;
+  // Before the waiter has blocked the signal it ends by it; that is no failure of its own. When it is slow to come it may not wait so
+  // long.
+  const Result result =
+      ltsim("explore --executions 300 --keep-going --process ./waiter.so --process ./sender.so");
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_TRUE(contains(result.output, "exit: waiter ended with status 4")) << result.output;
+  EXPECT_FALSE(contains(result.output, "status 5")) << result.output;
+}
+
+TEST_F(ProcessesTest, find_and_replay_what_a_file_of_the_schedule_says) {
+  build("kernel", std::string{mailbox} + R"(
+    int main() {
+      Mailbox* const box = attach();
+      box->request = 1;
+      sem_post(asked);
+      box->request = 2;
+      return 0;
+    })");
+  build("emulator", std::string{mailbox} + R"(
+    int main() {
+      const Mailbox* const box = attach();
+      sem_wait(asked);
+      return box->request == 1 ? 0 : 9;
+    })");
+  const Result found = ltsim("explore --process ./emulator.so --process ./kernel.so");
+  EXPECT_EQ(found.exit_code, 1);
+  const Result replayed = ltsim("replay out/emulator+kernel.schedule");
+  EXPECT_EQ(replayed.exit_code, 1);
+  EXPECT_FALSE(contains(replayed.output, "not as recorded")) << replayed.output;
+  EXPECT_TRUE(contains(read("out/emulator+kernel.schedule"), "program   \"ltsim-processes\"\n"))
+      << found.output;
+  const Result proved = ltsim("prove --process ./emulator.so --process ./kernel.so");
+  EXPECT_EQ(proved.exit_code, 1);
+  EXPECT_TRUE(contains(proved.output, "emulator+kernel")) << proved.output;
+}
+
+TEST_F(ProcessesTest, are_refused_with_the_reason) {
+  build("kernel", std::string{mailbox} + kernel);
+  write("text.so", "no image\n");
+  const auto refusal = [&](const std::string& arguments) {
+    const Result result = ltsim("explore " + arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.output;
+    return result.output;
+  };
+  EXPECT_EQ(refusal("--process ./missing.so"), "ltsim: ./missing.so: No such file or directory\n");
+  EXPECT_EQ(refusal("--process ./text.so"),
+            "ltsim: ./text.so: is no program: a script cannot be looked into\n");
+  EXPECT_EQ(refusal("--process /lib/x86_64-linux-gnu/libm.so.6"),
+            "ltsim: /lib/x86_64-linux-gnu/libm.so.6: was not built with ltsim-cc or ltsim-c++ --process\n");
+  EXPECT_EQ(refusal("--process ./kernel.so --crash kern"),
+            "ltsim: there is no process \"kern\"; there are kernel\n");
+  EXPECT_EQ(refusal("--process ./kernel.so --crash kernel:soon"),
+            "ltsim: --crash kernel:soon: \"soon\" is no number of milliseconds\n");
+  EXPECT_EQ(refusal("--service ./kernel.so"), "ltsim: no --process: a world of services never ends\n");
+  EXPECT_TRUE(contains(refusal("--process ./kernel.so --fault rain"),
+                       "there is no fault \"rain\"; there are lost-post"));
+  const Result alone = shell(LTSIM_PROCESSES);
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_EQ(alone.output, "ltsim-processes: is run by ltsim: ltsim explore --process IMAGE:ARGUMENTS ...\n");
+}
+
+TEST_F(ProcessesTest, of_the_kernel_and_the_emulator_exchange_unmodified) {
+  write("fin.il", R"(PROGRAM fin
+LD M100
+OR M101
+OR M102
+ST M120
+LD M8000
+ST M122
+ST M124
+ST M125
+ST M126
+END_PROGRAM
+)");
+  write("part.nc", "N10 M8\nN20 M30\n");
+  const Result once = run_once("plc-emulator+cnc-kernel", R"(argument  "--service"
+argument  ")" IMAGES_FOLDER R"(/plc-emulator.so:--segment ltsim-processes-test --program fin.il"
+argument  "--process"
+argument  ")" IMAGES_FOLDER R"(/cnc-kernel.so:--segment ltsim-processes-test part.nc"
+)");
+  EXPECT_EQ(once.exit_code, 0) << once.output;
+  EXPECT_TRUE(contains(once.output, "program ended after 0.")) << once.output;
+  EXPECT_TRUE(contains(once.output, "2 handshakes, 0 motions")) << once.output;
+}
+
+}  // namespace
