@@ -15,8 +15,8 @@
 namespace ltsim {
 namespace {
 
-constexpr std::array<const char*, 7> option_names{"--process", "--service", "--crash",      "--stall",
-                                                  "--fault",   "--points",  "--exit-status"};
+constexpr std::array<const char*, 8> option_names{"--process", "--service", "--crash",       "--stall",
+                                                  "--fault",   "--points",  "--exit-status", "--steady"};
 
 /// As they were typed.
 struct Typed {
@@ -51,6 +51,8 @@ void add_options(CLI::App& app, Typed& typed, WorldOptions& options) {
       ->allow_extra_args(false)
       ->check(CLI::Range(0, 255))
       ->capture_default_str();
+  app.add_flag("--steady", options.is_steady,
+               "nobody is slow but by --stall: time passes only when nobody can run");
   app.add_option("--points", options.points_max, "more scheduling points than this are a livelock")
       ->check(CLI::PositiveNumber);
 }
@@ -186,8 +188,8 @@ std::vector<std::string> take_process_options(std::vector<std::string>& command)
       return word == name || (word.starts_with(name) && word[name.size()] == '=');
     });
     (is_ours ? taken : left).push_back(word);
-    if (is_ours && word.find('=') == std::string::npos && i + 1 < command.size())
-      taken.push_back(command[++i]);
+    const bool has_value = is_ours && word != "--steady" && word.find('=') == std::string::npos;
+    if (has_value && i + 1 < command.size()) taken.push_back(command[++i]);
   }
   command = std::move(left);
   return taken;

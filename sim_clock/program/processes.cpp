@@ -35,6 +35,7 @@ class Processes {
     services_are_ready_ = false;
     services_were_stopped_ = false;
     if (options_.points_max != 0) world.set_points_max(options_.points_max);
+    if (options_.is_steady) world.set_steady();
     world.set_exit([this, &world](const World::Exit& how) { exit(world, how); });
     for (const ProcessOptions& options : options_.processes) {
       Process& process = world.process(options.name);

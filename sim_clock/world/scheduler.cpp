@@ -51,6 +51,7 @@ void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   cpu_ = Cpu::many;
   ready_ever_ = 0;
   steps_are_checked_ = false;
+  is_steady_ = false;
   is_abandoned_ = false;
   outcome_.kind = OutcomeKind::passed;
   outcome_.message.clear();
@@ -463,7 +464,7 @@ TaskId Scheduler::choose_task(std::span<const std::uint64_t> options, TaskId run
 }
 
 SlowMoment Scheduler::let_time_pass(bool running_can_be_held_up) noexcept {
-  if (in_fair_tail()) [[unlikely]]
+  if (in_fair_tail() || is_steady_) [[unlikely]]
     return {};
   for (unsigned i = 0; i < slow_moments_max; ++i) {
     ++decisions_;

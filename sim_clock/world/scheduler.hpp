@@ -119,6 +119,8 @@ class Scheduler {
 
   /// From now on, in this execution, World::check_step() is told each step.
   void check_steps() noexcept { steps_are_checked_ = true; }
+  /// From now on, in this execution, the strategy is not asked whether somebody is slow.
+  void set_steady() noexcept { is_steady_ = true; }
 
   // --- priorities; they matter on Cpu::one_fifo only (one_fifo.cpp) ---
 
@@ -290,6 +292,7 @@ class Scheduler {
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;
   bool steps_are_checked_ = false;
+  bool is_steady_ = false;
   bool is_abandoned_ = false;
   Outcome outcome_;
   std::function<std::string()> describe_outcome_;  // until its message is made

@@ -226,6 +226,9 @@ class World {
   /// More scheduling points than this are a livelock. Default Scheduler::points_max_default.
   void set_points_max(std::uint64_t points) noexcept { scheduler_.set_points_max(points); }
 
+  /// In this execution nobody is slow of the strategy's will: time passes only when nobody can run.
+  void set_steady() noexcept { scheduler_.set_steady(); }
+
   /// Which processors the simulated machine has in this execution.
   void set_cpu(Cpu cpu) noexcept { scheduler_.set_cpu(cpu); }
 
