@@ -72,8 +72,9 @@ WeakMemory::Result perform_weakly(const WeakMemory::Access& access, const void* 
       access.kind == AtomicAccess::update && !result.stored ? AtomicAccess::load : access.kind;
   const auto place = ltsim::shared_place(access.address);
   if (world.checks().on() && place) {
-    world.checks().accessed(shared_access(*ltsim::current_task, *place, access.bytes, done, caller),
-                            reads(done));
+    ltsim::SharedAccess shared = shared_access(*ltsim::current_task, *place, access.bytes, done, caller);
+    shared.ticks = result.ticks;
+    world.checks().accessed(shared, reads(done));
   }
   return result;
 }

@@ -366,6 +366,27 @@ TEST_F(ProgramsTest, have_atomic_instructions_in_their_inline_assembly_seen) {
   EXPECT_EQ(piped.exit_code, 0) << piped.output;
 }
 
+TEST_F(ProgramsTest, may_write_plainly_where_an_atomic_store_was_that_they_have_acquired) {
+  build("p.cpp", R"(
+    #include <atomic>
+    #include <new>
+    #include <thread>
+    alignas(std::atomic<int>) unsigned char node[sizeof(std::atomic<int>)];
+    int main() {
+      auto* const link = new (node) std::atomic<int>{0};
+      std::thread owner{[=] {
+        while (link->load(std::memory_order_acquire) == 0) std::this_thread::yield();
+        *new (node) int = 2;
+      }};
+      link->store(1, std::memory_order_release);
+      owner.join();
+    })");
+  for (const std::string memory : {"sc", "c11"}) {
+    const Result result = ltsim("explore --executions 1000 --memory " + memory + " -- ./p");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+  }
+}
+
 TEST_F(ProgramsTest, keep_their_registers_around_what_is_seen_of_their_inline_assembly) {
   build("p.cpp", R"(
     unsigned half = 0xffff0000U;
