@@ -39,7 +39,7 @@ void RaceDetector::reset() noexcept {
 RaceDetector::LastWrite RaceDetector::access(const SharedAccess& access) {
   Cell cell{
       .next = none,
-      .ticks = order_.now(access.task),
+      .ticks = access.ticks != 0 ? access.ticks : order_.now(access.task),
       .site = access.site,
       .task = static_cast<std::uint8_t>(access.task),
       .bytes_mask = 0,

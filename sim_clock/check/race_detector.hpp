@@ -31,6 +31,7 @@ struct SharedAccess {
   bool writes = false;
   bool plain = false;      ///< not atomic
   std::uint32_t site = 0;  ///< as in Operation
+  Ticks ticks = 0;         ///< of the task when it was made; 0: now
 };
 
 struct Race {

@@ -7,6 +7,8 @@
 
 #include <cstdint>
 
+#include <fmt/format.h>
+
 #include "sim_clock/takeover/shared_access.hpp"
 #include "sim_clock/world/world.hpp"
 
@@ -70,8 +72,9 @@ WeakMemory::Result perform_weakly(const WeakMemory::Access& access, const void* 
       access.kind == AtomicAccess::update && !result.stored ? AtomicAccess::load : access.kind;
   const auto place = ltsim::shared_place(access.address);
   if (world.checks().on() && place) {
-    world.checks().accessed(shared_access(*ltsim::current_task, *place, access.bytes, done, caller),
-                            reads(done));
+    ltsim::SharedAccess shared = shared_access(*ltsim::current_task, *place, access.bytes, done, caller);
+    shared.ticks = result.ticks;
+    world.checks().accessed(shared, reads(done));
   }
   return result;
 }
@@ -224,3 +227,31 @@ LTSIM_ATOMICS(64, std::uint64_t)
 // Where memory is sequentially consistent a fence is no scheduling point.
 extern "C" void __tsan_atomic_thread_fence(int order) { fence(order); }
 extern "C" void __tsan_atomic_signal_fence(int /*order*/) {}
+
+namespace {
+
+/// What the instruction of inline assembly works on that the running task performs next.
+struct LockedInstruction {
+  volatile void* address;
+  std::size_t bytes;
+} locked_instruction;
+
+}  // namespace
+
+/// Called by takeover/inline_assembly.cpp. A weak memory would have to carry out the instruction itself: that is not simulated.
+extern "C" void ltsim_locked_instruction_follows(volatile void* address, std::size_t bytes,
+                                                 const void* caller) {
+  if (is_weak())
+    ltsim::current_task->world->unsupported(
+        fmt::format("{} performs an atomic operation by inline assembly, which ltsim simulates only where "
+                    "memory is sequentially consistent",
+                    ltsim::current_task->name));
+  point(address, bytes, OperationKind::atomic_update, __ATOMIC_SEQ_CST, caller);
+  locked_instruction = {.address = address, .bytes = bytes};
+}
+
+/// @param success  false: it was a compare-and-exchange that found another value
+extern "C" void ltsim_locked_instruction_was_performed(bool success, const void* caller) {
+  exchanged(locked_instruction.address, locked_instruction.bytes, success, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST,
+            caller);
+}

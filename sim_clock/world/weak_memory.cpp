@@ -161,7 +161,7 @@ WeakMemory::Result WeakMemory::carry_out(Location& location, const Access& acces
     seq_cst_.put_before(seq_cst_.with_predecessors(events), later);
   }
   Store& store = location.stores[position];
-  const Result result{.found = store.value, .stored = option.stores};
+  const Result result{.found = store.value, .stored = option.stores, .ticks = before};
   if (loads) {
     store.of_loads |= events;
     store.after |= own;

@@ -51,6 +51,7 @@ class WeakMemory {
   struct Result {
     std::uint64_t found;  ///< by a load or an update
     bool stored;
+    Ticks ticks;  ///< of the task: what a store hands over covers them
   };
 
   explicit WeakMemory(World& world) : world_(world), slots_(slots_at_first) {}

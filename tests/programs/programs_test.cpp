@@ -55,9 +55,11 @@ constexpr Program programs[] = {
     {"lookup_then_ref", "crash"},
     {"lost_signal", "deadlock"},
     {"one_condition_buffer", "deadlock"},
+    {"message_queue_two_steps", "deadlock"},
     {"pool_shutdown", "exit"},
     {"promise_twice", "crash"},
     {"publish_relaxed", "data-race"},
+    {"queue_done_too_soon", "exit"},
     {"readers_count", "deadlock"},
     {"refcount_plain", "data-race"},
     {"refcount_two_steps", "data-race crash"},
@@ -69,6 +71,8 @@ constexpr Program programs[] = {
     {"shm_mailbox", "exit"},
     {"spin_average", "exit assertion"},
     {"spin_test_then_set", "data-race exit"},
+    {"spsc_two_producers", "data-race exit"},
+    {"stack_two_poppers", "data-race"},
     {"start_before_store", "crash"},
     {"start_gate", "deadlock"},
     {"static_local_counter", "data-race assertion"},
@@ -103,10 +107,10 @@ class ProgramsTest : public testing::Test {
     std::ofstream{folder_.path() / name} << text;
   }
   /// The program "p" from this source.
-  void build(const char* name, const std::string& source) const {
+  void build(const char* name, const std::string& source, const std::string& options = "") const {
     write(name, source);
     const Result built =
-        shell(std::string{"LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " -std=c++20 -O1 "} + name + " -o p");
+        shell("LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " -std=c++20 -O1 " + options + " " + name + " -o p");
     ASSERT_EQ(built.exit_code, 0) << built.output;
   }
   [[nodiscard]] std::string read(const char* name) const {
@@ -383,6 +387,100 @@ TEST_F(ProgramsTest, leave_no_descriptor_open_for_the_next_execution) {
         return 3;
     })");
   const Result result = ltsim("explore --executions 300 -- ./p");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(ProgramsTest, have_atomic_instructions_in_their_inline_assembly_seen) {
+  const std::string source = R"(
+    #include <cstring>
+    #include <thread>
+    unsigned char is_locked = 0;
+    int counted = 0;         // by who has the lock
+    long counted_by_both = 0;
+    unsigned char exchange(unsigned char value) {
+      asm volatile("xchgb %0, %1" : "+q"(value), "+m"(is_locked) : : "memory");
+      return value;
+    }
+    long add(long value) {
+      asm volatile("lock\n\txaddq %0, %1" : "+r"(value), "+m"(counted_by_both) : : "memory", "cc");
+      return value;
+    }
+    bool replace(long found, long value) {
+      unsigned char done = 0;
+      asm volatile("1: lock; cmpxchgq %3, %1\n\tsete %2"
+                   : "+a"(found), "+m"(counted_by_both), "=q"(done) : "r"(value) : "memory", "cc");
+      return done != 0;
+    }
+    void count() {
+      while (exchange(1) != 0) std::this_thread::yield();
+      ++counted;
+      exchange(0);
+      long found = add(0);
+      while (!replace(found, found + 1)) found = add(0);
+    }
+    void count_in_two_steps() { add(add(0) == 0 ? 1 : 2); }
+    int main(int, char** arguments) {
+      const auto work = std::strcmp(arguments[1], "well") == 0 ? count : count_in_two_steps;
+      std::thread one{work};
+      std::thread two{work};
+      one.join();
+      two.join();
+      if (work == count_in_two_steps) return counted_by_both == 3 ? 0 : 1;
+      return counted == 2 && counted_by_both == 2 ? 0 : 1;
+    })";
+  build("p.cpp", source);
+  const Result well = ltsim("explore --executions 2000 -- ./p well");
+  EXPECT_EQ(well.exit_code, 0) << well.output;
+  const Result badly = ltsim("explore --executions 2000 -- ./p badly");
+  EXPECT_EQ(badly.exit_code, 1) << badly.output;
+  EXPECT_TRUE(contains(badly, "exit: the program ended with status 1")) << badly.output;
+  EXPECT_TRUE(contains(badly, "updates  counted_by_both")) << badly.output;
+  const Result weak = ltsim("explore --executions 10 --memory c11 -- ./p well");
+  EXPECT_EQ(weak.exit_code, 3) << weak.output;
+  EXPECT_TRUE(contains(weak, "performs an atomic operation by inline assembly")) << weak.output;
+  build("p.cpp", source, "-pipe");
+  const Result piped = ltsim("explore --executions 2000 -- ./p well");
+  EXPECT_EQ(piped.exit_code, 0) << piped.output;
+}
+
+TEST_F(ProgramsTest, may_write_plainly_where_an_atomic_store_was_that_they_have_acquired) {
+  build("p.cpp", R"(
+    #include <atomic>
+    #include <new>
+    #include <thread>
+    alignas(std::atomic<int>) unsigned char node[sizeof(std::atomic<int>)];
+    int main() {
+      auto* const link = new (node) std::atomic<int>{0};
+      std::thread owner{[=] {
+        while (link->load(std::memory_order_acquire) == 0) std::this_thread::yield();
+        *new (node) int = 2;
+      }};
+      link->store(1, std::memory_order_release);
+      owner.join();
+    })");
+  for (const std::string memory : {"sc", "c11"}) {
+    const Result result = ltsim("explore --executions 1000 --memory " + memory + " -- ./p");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+  }
+}
+
+TEST_F(ProgramsTest, keep_their_registers_around_what_is_seen_of_their_inline_assembly) {
+  build("p.cpp", R"(
+    unsigned half = 0xffff0000U;
+    int main() {
+      // What lies below the stack pointer, the flags, registers of all kinds.
+      unsigned long below = 0, rest = 0;
+      double kept = 1.5;
+      unsigned char carry = 0, is_negative = 0;
+      asm volatile(
+          "movq $77, -8(%%rsp)\n\tstc\n\tmovq $5, %%r11\n\t"
+          "lock incl %4\n\tsetc %2\n\tsets %3\n\t"
+          "movq -8(%%rsp), %0\n\taddq $6, %%r11\n\tmovq %%r11, %1"
+          : "=&r"(below), "=&r"(rest), "=&q"(carry), "=&q"(is_negative), "+m"(half), "+x"(kept) : : "r11", "cc", "memory");
+      return below == 77 && rest == 11 && carry == 1 && is_negative == 1 && half == 0xffff0001U && kept == 1.5 ? 0 : 1;
+    })");
+  EXPECT_EQ(shell("./p").exit_code, 0);
+  const Result result = ltsim("explore --executions 10 -- ./p");
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
