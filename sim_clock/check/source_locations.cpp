@@ -10,9 +10,11 @@
 #include <memory>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/own_descriptor.hpp"
 #include "sim_clock/world/program_image.hpp"
 #include "sim_clock/world/task.hpp"
 
@@ -31,7 +33,7 @@ bool is_of_the_code_under_test(std::string_view file) noexcept {
 /// The program's debug information, read once and kept.
 class DebugInformation {
  public:
-  DebugInformation() : file_(open("/proc/self/exe", O_RDONLY | O_CLOEXEC)) {
+  DebugInformation() : file_(as_own_descriptor(open("/proc/self/exe", O_RDONLY | O_CLOEXEC))) {
     if (file_ >= 0) dwarf_ = dwarf_begin(file_, DWARF_C_READ);
   }
 
@@ -113,6 +115,11 @@ class DebugInformation {
   Dwarf* dwarf_ = nullptr;
 };
 
+std::vector<std::uint32_t>& looked_up() noexcept {
+  static std::vector<std::uint32_t> sites;
+  return sites;
+}
+
 }  // namespace
 
 const std::string& source_location(std::uint32_t site) {
@@ -122,7 +129,10 @@ const std::string& source_location(std::uint32_t site) {
   const GhostScope ghost;
   static const DebugInformation information;
   entry->second = information.location(site);
+  looked_up().push_back(site);
   return entry->second;
 }
+
+std::span<const std::uint32_t> sites_looked_up() noexcept { return looked_up(); }
 
 }  // namespace ltsim
