@@ -2,6 +2,7 @@
 // operator new. Called as any program is, with no command of ltsim in its environment, a program does what it always does.
 
 #include <dlfcn.h>
+#include <malloc.h>
 
 #include <cstddef>
 #include <cstdio>
@@ -73,6 +74,8 @@ extern "C" int __libc_start_main(ltsim::Main main, int count, char** arguments, 
     std::fprintf(stderr, "ltsim: %s\n", trouble->c_str());
     std::exit(3);
   }
+  // Tasks have thread-local storage of their own, so malloc would take them for threads, and make an arena for each.
+  mallopt(M_ARENA_MAX, 1);
   ltsim::program_main = main;
   ltsim::is_before_main = true;
   ProgramHeap::serve_outside_tasks(true);
