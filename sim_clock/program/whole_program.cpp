@@ -20,6 +20,7 @@
 #include "sim_clock/program/output_capture.hpp"
 #include "sim_clock/scenario/command_line.hpp"
 #include "sim_clock/scenario/scenario.hpp"
+#include "sim_clock/world/task_storage.hpp"
 
 namespace ltsim {
 namespace {
@@ -38,6 +39,7 @@ class WholeProgram {
   /// What the executions of a process, and of those that it forks, have in common.
   void prepare() {
     if (capture_) return;
+    TaskStorage{}.reset();  // looks up where thread-locals lie: once, and not in each process that is forked
     descriptors_.emplace();
     capture_.emplace();  // another process has one of its own
   }
