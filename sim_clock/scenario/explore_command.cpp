@@ -225,7 +225,7 @@ void add_explore_command(CLI::App& app, Command& chosen) {
           "and "
           "thread-locals are put back, not what libraries keep for themselves; fork: in a process of its "
           "own, some "
-          "ten times slower")
+          "thirty times slower")
       ->check(CLI::IsMember(
           {std::string{to_string(StartState::restore)}, std::string{to_string(StartState::fork)}}));
   command->add_flag("--keep-going", arguments->options.keep_going,
