@@ -30,4 +30,18 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
+/// Which of the outcomes that an execution comes to besides what its code does are failures.
+struct Findings {
+  bool races = true;  ///< data_race
+  bool leaks = true;  ///< leak
+
+  bool operator==(const Findings&) const = default;
+};
+
+/// See explore/carried_bytes.hpp.
+template <typename Carrier>
+void carry(Carrier& carrier, Outcome& outcome) {
+  carrier(outcome.kind, outcome.message);
+}
+
 }  // namespace ltsim

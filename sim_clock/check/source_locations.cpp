@@ -11,9 +11,11 @@
 #include <memory>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/own_descriptor.hpp"
 #include "sim_clock/world/program_image.hpp"
 #include "sim_clock/world/task.hpp"
 
@@ -33,7 +35,7 @@ bool is_of_the_code_under_test(std::string_view file) noexcept {
 class DebugInformation {
  public:
   explicit DebugInformation(std::size_t image)
-      : file_(open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC)) {
+      : file_(as_own_descriptor(open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC))) {
     if (file_ >= 0) dwarf_ = dwarf_begin(file_, DWARF_C_READ);
   }
 
@@ -114,6 +116,11 @@ class DebugInformation {
   Dwarf* dwarf_ = nullptr;
 };
 
+std::vector<std::uint32_t>& looked_up() noexcept {
+  static std::vector<std::uint32_t> sites;
+  return sites;
+}
+
 }  // namespace
 
 const std::string& source_location(std::uint32_t site) {
@@ -125,7 +132,10 @@ const std::string& source_location(std::uint32_t site) {
   const auto [image, linked_address] = ProgramImage::find_site(site);
   if (information[image] == nullptr) information[image] = std::make_unique<DebugInformation>(image);
   entry->second = information[image]->location(linked_address);
+  looked_up().push_back(site);
   return entry->second;
 }
+
+std::span<const std::uint32_t> sites_looked_up() noexcept { return looked_up(); }
 
 }  // namespace ltsim

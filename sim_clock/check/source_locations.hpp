@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace ltsim {
@@ -15,5 +16,8 @@ namespace ltsim {
 /// @return      "protocol/x.cpp:40", relative to the folder that holds both the source and the folder it was
 ///              compiled in; empty if it is not known. The same in every process that runs this program.
 [[nodiscard]] const std::string& source_location(std::uint32_t site);
+
+/// Those that were asked for so far, in the order of that. A process that looks them up as well spares those that it forks the work.
+[[nodiscard]] std::span<const std::uint32_t> sites_looked_up() noexcept;
 
 }  // namespace ltsim

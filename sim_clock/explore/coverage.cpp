@@ -5,7 +5,7 @@
 namespace ltsim {
 
 void Coverage::forget() {
-  std::fill(seen_.begin(), seen_.end(), 0);
+  std::ranges::fill(seen_.bytes(), std::byte{0});
   new_count_ = 0;
 }
 

@@ -3,22 +3,22 @@
 //
 // Things seen are bits of one table, by hash: two of them may share a bit, and the second then counts as
 // seen. Read new_in_execution() right after an execution, before the same choices are run again: a second time
-// nothing is new (ExecutionSummary::new_states). The hashes hold places in the code and numbers of tasks and segments, no addresses: the count is the
+// nothing is new (ExecutionSummary::new_states). The table is shared with forked processes. The hashes hold places in the code and numbers of tasks and segments, no addresses: the count is the
 // same in every process.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "sim_clock/check/race_detector.hpp"
+#include "sim_clock/explore/memory_across_forks.hpp"
 
 namespace ltsim {
 
 class Coverage {
  public:
-  Coverage() : seen_(std::size_t{1} << (table_bits - 6)) {}
+  Coverage() = default;
 
   /// Begins a new exploration: nothing was seen yet.
   void forget();
@@ -47,14 +47,18 @@ class Coverage {
   void see(std::uint64_t hash) noexcept {
     const std::uint64_t bit = ((hash ^ hash >> 32U) * 0x94d049bb133111ebU) >> (64 - table_bits);
     if (!marks_.empty()) marks_[bit & (marks_.size() - 1)] = 1;
-    std::uint64_t& word = seen_[bit / 64];
+    std::uint64_t& word = words()[bit / 64];
     const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
     if ((word & mask) != 0) return;
     word |= mask;
     ++new_count_;
   }
 
-  std::vector<std::uint64_t> seen_;
+  [[nodiscard]] std::uint64_t* words() const noexcept {
+    return reinterpret_cast<std::uint64_t*>(seen_.bytes().data());
+  }
+
+  SharedMemory seen_{std::size_t{1} << (table_bits - 3)};  // 64 bits a word
   std::uint64_t new_count_ = 0;
   std::span<std::uint8_t> marks_;
 };

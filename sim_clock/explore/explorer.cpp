@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/program_symbols.hpp"
 #include "sim_clock/check/signal_guard.hpp"
 #include "sim_clock/explore/hash_set.hpp"
 #include "sim_clock/explore/minimizer.hpp"
@@ -35,6 +38,17 @@ std::string first_difference(std::string_view one, std::string_view other) {
     other.remove_prefix(std::min(b.size() + 1, other.size()));
   }
   return "only the very first run differed";
+}
+
+std::string_view why_runs_differ(const Scenario& scenario, StartState state) {
+  if (state == StartState::fork)
+    return "each had a process of its own, so the difference came from outside: a file, another process, the "
+           "machine";
+  if (scenario.program.empty())
+    return "a variable of the code under test or of the scenario survives from one execution to the next";
+  return "the program's memory was put back between them, but not what libraries keep for themselves, nor "
+         "files; "
+         "\"--state fork\" gives each execution a process of its own";
 }
 
 }  // namespace
@@ -71,15 +85,15 @@ ExecutionResult Explorer::explore_one(const Scenario& scenario, Strategy& strate
                                       const ExploreOptions& options, std::uint64_t execution,
                                       std::vector<Failure>& failures, std::optional<Failure>& fresh) {
   const std::uint64_t seed = seed_of(options.seed, execution);
-  const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
-  ExecutionResult result{
-      .trace_hash = hash, .decisions = world_.scheduler().decisions(), .points = world_.scheduler().points()};
-  ExecutionSummary summary{.points = result.points, .new_states = world_.coverage().new_in_execution()};
-  if (world_.scheduler().outcome().passed()) {
+  const Ended ended = run(scenario, strategy, seed);
+  ExecutionResult result = ended.result;
+  const std::uint64_t hash = result.trace_hash;
+  ExecutionSummary summary{.points = result.points, .new_states = ended.new_states};
+  if (ended.outcome.passed()) {
     if (std::has_single_bit(execution) && !repeats(scenario, strategy, seed, hash)) {
       throw not_repeatable(scenario, strategy, seed);
     }
-  } else if (Failure* const known = find_failure(failures, world_.scheduler().outcome())) {
+  } else if (Failure* const known = find_failure(failures, ended.outcome)) {
     ++known->count;
     result.failure = static_cast<std::size_t>(known - failures.data()) + 1;
   } else {
@@ -119,6 +133,7 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
   world_.coverage().forget();
   world_.set_default_memory(options.memory);
   world_.set_default_cpu(options.cpu);
+  world_.set_findings(options.findings);
   while (report.executions < options.executions_max) {
     if (options.seconds_max && report.executions % executions_per_look_at_the_time == 0 &&
         elapsed() >= *options.seconds_max) {
@@ -139,26 +154,50 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
   return report;
 }
 
+Explorer::Ended Explorer::run(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
+  return apart<Ended>([&] {
+    const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
+    const Scheduler& scheduler = world_.scheduler();
+    return Ended{
+        .outcome = scheduler.outcome(),
+        .result = {.trace_hash = hash, .decisions = scheduler.decisions(), .points = scheduler.points()},
+        .new_states = world_.coverage().new_in_execution()};
+  });
+}
+
+void Explorer::look_up(const std::vector<std::uint32_t>& sites) {
+  for (const std::uint32_t site : sites) static_cast<void>(source_location(site));
+  static_cast<void>(symbol_at(0));
+}
+
 bool Explorer::repeats(const Scenario& scenario, Strategy& strategy, std::uint64_t seed, std::uint64_t hash) {
-  const std::uint64_t second = execute(scenario, strategy, seed, nullptr);
+  const std::uint64_t second = run(scenario, strategy, seed).result.trace_hash;
   // The first run may have come where something is initialised on first use. After that every run must be
   // like the last.
-  return second == hash || execute(scenario, strategy, seed, nullptr) == second;
+  return second == hash || run(scenario, strategy, seed).result.trace_hash == second;
+}
+
+std::string Explorer::trace(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
+  return apart<std::string>([&] {
+    TextTrace trace{world_};
+    execute(scenario, strategy, seed, &trace);
+    return trace.text();
+  });
 }
 
 Explorer::NotSimulable Explorer::not_repeatable(const Scenario& scenario, Strategy& strategy,
                                                 std::uint64_t seed) {
-  TextTrace one{world_};
-  execute(scenario, strategy, seed, &one);
-  TextTrace other{world_};
-  execute(scenario, strategy, seed, &other);
-  return {
-      fmt::format("two runs of seed {} of {} differ: a variable of the code under test or of the scenario "
-                  "survives from one execution to the next. Where: {}",
-                  seed, scenario.name, first_difference(one.text(), other.text()))};
+  const std::string one = trace(scenario, strategy, seed);
+  const std::string other = trace(scenario, strategy, seed);
+  return {fmt::format("two runs of seed {} of {} differ: {}. Where: {}", seed, scenario.name,
+                      why_runs_differ(scenario, start_state()), first_difference(one, other))};
 }
 
 Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
+  return apart<Failure>([&] { return record_here(scenario, strategy, seed); });
+}
+
+Failure Explorer::record_here(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
   AnchorTracker anchors{world_, nullptr};
   RecordingStrategy recording{strategy, world_, anchors};
   const std::uint64_t hash = execute(scenario, recording, seed, &anchors);
@@ -172,6 +211,8 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
                               .message = one_line(outcome.message),
                               .memory = world_.memory(),
                               .cpu = world_.scheduler().cpu(),
+                              .findings = world_.findings(),
+                              .start_state = start_state(),
                               .input = world_.input_records(),
                               .program = scenario.program,
                               .deviations = recording.deviations()},
@@ -184,10 +225,15 @@ Failure Explorer::record(const Scenario& scenario, Strategy& strategy, std::uint
 void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono::duration<double> seconds) {
   // What a core does: so the end seldom depends on how busy the machine is.
   constexpr double points_per_second = 20e6;
-  const MinimizeReport report = Minimizer{world_, scenario}.minimize(
-      failure.schedule, {.seconds_max = seconds,
-                         .points_max = static_cast<std::uint64_t>(seconds.count() * points_per_second),
-                         .numbers_matter = false});
+  constexpr double forks_per_second = 1000;
+  const MinimizeReport report = Minimizer{*this, world_, scenario}.minimize(
+      failure.schedule,
+      {.seconds_max = seconds,
+       .executions_max = start_state() == StartState::restore
+                             ? SearchBudget::unlimited
+                             : static_cast<std::uint64_t>(seconds.count() * forks_per_second),
+       .points_max = static_cast<std::uint64_t>(seconds.count() * points_per_second),
+       .numbers_matter = false});
   if (!report.reproduced)
     return;  // its anchors are not unique: the recorded schedule stays, for what it tells
   failure.outcome = report.outcome;
@@ -195,18 +241,20 @@ void Explorer::minimize(const Scenario& scenario, Failure& failure, std::chrono:
   failure.at = report.at;
   failure.schedule = report.schedule;
   failure.one_minimal = report.one_minimal;
-  Story story{world_, failure.schedule};
-  static_cast<void>(replay(scenario, failure.schedule, &story));
-  failure.story = story.text(failure.outcome);
-  failure.output = world_.output();
+  std::tie(failure.story, failure.output) = apart<std::pair<std::string, std::string>>([&] {
+    Story story{world_, failure.schedule};
+    static_cast<void>(replay(scenario, failure.schedule, &story));
+    return std::pair{story.text(failure.outcome), world_.output()};
+  });
 }
 
 ReplayReport Explorer::replay(const Scenario& scenario, const Schedule& schedule, StepListener* listener) {
   const SignalGuard signals;
   world_.set_default_memory(schedule.memory);
   world_.set_default_cpu(schedule.cpu);
+  world_.set_findings(schedule.findings);
   world_.set_input(schedule.input);
-  {
+  if (schedule.start_state == StartState::restore) {
     // What is initialised on first use was so when the schedule was recorded.
     AnchorTracker anchors{world_, nullptr};
     ReplayStrategy strategy{schedule.deviations, world_, anchors};

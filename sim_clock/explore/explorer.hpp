@@ -11,13 +11,18 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sim_clock/check/outcome.hpp"
+#include "sim_clock/check/source_locations.hpp"
+#include "sim_clock/explore/forked_work.hpp"
 #include "sim_clock/explore/replay_strategy.hpp"
 #include "sim_clock/explore/schedule.hpp"
+#include "sim_clock/explore/start_state.hpp"
 #include "sim_clock/explore/strategy.hpp"
 #include "sim_clock/scenario/scenario.hpp"
 
@@ -28,7 +33,9 @@ struct ExploreOptions {
   std::uint64_t executions_max = 100'000;
   std::optional<std::chrono::duration<double>> seconds_max;  ///< of real time; looked at every 64 executions
   Memory memory = Memory::sc;                                ///< unless the scenario says otherwise
-  Cpu cpu = Cpu::many;      ///< of the machine, unless the scenario says otherwise
+  Cpu cpu = Cpu::many;  ///< of the machine, unless the scenario says otherwise
+  Findings findings;
+  StartState start_state = StartState::restore;
   bool keep_going = false;  ///< go on after a failure and report each different one once
   /// Real time for making the schedule of each different failure small; 0: it stays as it was recorded.
   std::chrono::duration<double> minimize_seconds{0};
@@ -49,6 +56,14 @@ struct Failure {
   std::vector<std::string> messages;  ///< of all executions that count as this failure
   bool has_schedule = true;           ///< false: the process died, and the choices with it
 };
+
+/// See carried_bytes.hpp.
+template <typename Carrier>
+void carry(Carrier& carrier, Failure& failure) {
+  carrier(failure.outcome, failure.execution, failure.seed, failure.count, failure.trace_hash, failure.at,
+          failure.schedule, failure.choices_count, failure.one_minimal, failure.story, failure.output,
+          failure.messages, failure.has_schedule);
+}
 
 struct ExecutionResult {
   std::uint64_t trace_hash = 0;
@@ -85,6 +100,15 @@ class Explorer {
 
   explicit Explorer(World& world) : world_(world) {}
 
+  /// StartState::restore at first. With StartState::fork the world of this process sees no execution: what there is to know of one is what
+  /// the functions here return.
+  void set_start_state(StartState state) {
+    forks_ = state == StartState::fork ? std::make_unique<ForkedWork>() : nullptr;
+  }
+  [[nodiscard]] StartState start_state() const noexcept {
+    return forks_ ? StartState::fork : StartState::restore;
+  }
+
   /// Seed of the `execution`-th execution of an exploration, from 1.
   [[nodiscard]] static std::uint64_t seed_of(std::uint64_t exploration_seed,
                                              std::uint64_t execution) noexcept;
@@ -106,15 +130,62 @@ class Explorer {
   /// Runs one execution and writes its choices down.
   [[nodiscard]] Failure record(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
 
+  /// In this process, so with StartState::fork once in a process.
   /// @param listener  is told every step; may be null
   [[nodiscard]] ReplayReport replay(const Scenario& scenario, const Schedule& schedule,
                                     StepListener* listener);
 
-  /// Runs one execution. @return its trace hash
+  /// Work that runs one execution, by execute(), and returns what is to be known of it: in a process of its own where that is asked for.
+  /// @param work  returns what can be carried (carried_bytes.hpp); what else it changes may be lost
+  template <typename Result>
+  Result apart(const std::function<Result()>& work) {
+    if (!forks_) return work();
+    auto found = forks_->run<WithSites<Result>, NotSimulable>([&] {
+      const std::size_t known = sites_looked_up().size();
+      Result result = work();
+      const auto sites = sites_looked_up().subspan(known);
+      return WithSites<Result>{.result = std::move(result), .sites = {sites.begin(), sites.end()}};
+    });
+    if (!found.sites.empty()) look_up(found.sites);
+    return std::move(found.result);
+  }
+
+  /// Runs one execution, in this process. @return its trace hash
   std::uint64_t execute(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
                         StepListener* listener);
 
  private:
+  /// What is to be known of an execution that counts.
+  struct Ended {
+    Outcome outcome;
+    ExecutionResult result;
+    std::uint64_t new_states = 0;
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, Ended& ended) {
+      carrier(ended.outcome, ended.result, ended.new_states);
+    }
+  };
+
+  /// What work has come to, and the places in the code that were looked up for it.
+  template <typename Result>
+  struct WithSites {
+    Result result;
+    std::vector<std::uint32_t> sites;
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, WithSites& found) {
+      carrier(found.result, found.sites);
+    }
+  };
+
+  /// Here as well: those that are forked from now on know them, and need not read the debug information again.
+  static void look_up(const std::vector<std::uint32_t>& sites);
+
+  [[nodiscard]] Ended run(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
+  [[nodiscard]] Failure record_here(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
+  /// Runs one execution. @return its trace, as text
+  [[nodiscard]] std::string trace(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
   void minimize(const Scenario& scenario, Failure& failure, std::chrono::duration<double> seconds);
   /// Whether the seed gives this trace again, or has come to give another one for good.
   [[nodiscard]] bool repeats(const Scenario& scenario, Strategy& strategy, std::uint64_t seed,
@@ -123,6 +194,7 @@ class Explorer {
   [[nodiscard]] NotSimulable not_repeatable(const Scenario& scenario, Strategy& strategy, std::uint64_t seed);
 
   World& world_;
+  std::unique_ptr<ForkedWork> forks_;
 };
 
 }  // namespace ltsim

@@ -8,7 +8,6 @@
 #include "sim_clock/explore/recording_strategy.hpp"
 #include "sim_clock/explore/same_failure.hpp"
 #include "sim_clock/explore/search_filters.hpp"
-#include "sim_clock/explore/silence_watch.hpp"
 
 namespace ltsim {
 namespace {
@@ -62,6 +61,7 @@ MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOption
   const SignalGuard signals;
   world_.set_default_memory(failing.memory);
   world_.set_default_cpu(failing.cpu);
+  world_.set_findings(failing.findings);
   world_.set_input(failing.input);
   SearchBudget budget{options.executions_max, options.points_max, options.seconds_max};
   budget_ = &budget;
@@ -108,7 +108,12 @@ MinimizeReport Minimizer::minimize(const Schedule& failing, const MinimizeOption
   return report;
 }
 
-std::optional<Minimizer::Attempt> Minimizer::record(Strategy& strategy, AnchorTracker& anchors) {
+std::optional<Minimizer::Attempt> Minimizer::tried(Tried&& tried) {
+  budget_->use(tried.points);
+  return std::move(tried.failure);
+}
+
+Minimizer::Tried Minimizer::record(Strategy& strategy, AnchorTracker& anchors) {
   AddressRecorder addresses{strategy};
   RecordingStrategy recording{addresses, world_, anchors};
   std::uint64_t hash = 0;
@@ -118,27 +123,33 @@ std::optional<Minimizer::Attempt> Minimizer::record(Strategy& strategy, AnchorTr
   } catch (const Explorer::NotSimulable&) {
     simulable = false;
   }
-  budget_->use(world_.scheduler().points());
+  Tried tried{.failure = std::nullopt, .points = world_.scheduler().points()};
   const Outcome& outcome = world_.scheduler().outcome();
-  if (!simulable || outcome.passed() || !is_the_failure_(outcome)) return std::nullopt;
-  return Attempt{.deviations = recording.deviations(),
-                 .addressed = addresses.deviations(),
-                 .outcome = outcome,
-                 .trace_hash = hash,
-                 .at = world_.now()};
+  if (simulable && !outcome.passed() && is_the_failure_(outcome)) {
+    tried.failure = Attempt{.deviations = recording.deviations(),
+                            .addressed = addresses.deviations(),
+                            .outcome = outcome,
+                            .trace_hash = hash,
+                            .at = world_.now()};
+  }
+  return tried;
 }
 
 std::optional<Minimizer::Attempt> Minimizer::attempt(const std::vector<Deviation>& deviations) {
-  AnchorTracker anchors{world_, nullptr};
-  ReplayStrategy replay{deviations, world_, anchors};
-  return record(replay, anchors);
+  return tried(explorer_.apart<Tried>([&] {
+    AnchorTracker anchors{world_, nullptr};
+    ReplayStrategy replay{deviations, world_, anchors};
+    return record(replay, anchors);
+  }));
 }
 
 std::optional<Minimizer::Attempt> Minimizer::attempt(const AddressedSchedule& addressed) {
-  AnchorTracker anchors{world_, nullptr};
-  AddressedStrategy strategy;
-  strategy.set_deviations(addressed);
-  const auto recorded = record(strategy, anchors);
+  const auto recorded = tried(explorer_.apart<Tried>([&] {
+    AnchorTracker anchors{world_, nullptr};
+    AddressedStrategy strategy;
+    strategy.set_deviations(addressed);
+    return record(strategy, anchors);
+  }));
   if (!recorded) return std::nullopt;
   auto replayed = attempt(recorded->deviations);
   if (!replayed || replayed->trace_hash != recorded->trace_hash) return std::nullopt;
@@ -198,16 +209,22 @@ bool Minimizer::join_slow_moments() {
   std::vector<Deviation> others = best_.deviations;
   std::erase_if(others, lets_all_wait);
   if (best_.deviations.size() - others.size() < 2) return false;
-  AnchorTracker anchors{world_, nullptr};
-  ReplayStrategy replay{best_.deviations, world_, anchors};
-  SilenceWatch watch{replay, anchors};
-  if (!record(watch, anchors)) return false;
+  auto watched = explorer_.apart<Tried>([&] {
+    AnchorTracker anchors{world_, nullptr};
+    ReplayStrategy replay{best_.deviations, world_, anchors};
+    SilenceWatch watch{replay, anchors};
+    Tried tried = record(watch, anchors);
+    tried.silences = watch.silences();
+    return tried;
+  });
+  const auto silences = std::move(watched.silences);
+  if (!tried(std::move(watched))) return false;
   // The steps between the moments took time as well; a silence that ends in the middle of one ends surely after the
   // last look of a peer that polls.
   for (const unsigned halves : {1U, 0U, 2U}) {
     if (!has_budget(end_of_leaving_out)) return false;
     std::vector<Deviation> changed = others;
-    for (const SilenceWatch::Silence& silence : watch.silences()) {
+    for (const SilenceWatch::Silence& silence : silences) {
       for (const std::string& place : silence.held_up_at) {
         Deviation stall;
         stall.kind = Deviation::Kind::stall;

@@ -23,6 +23,7 @@
 #include "sim_clock/explore/explorer.hpp"
 #include "sim_clock/explore/schedule_search.hpp"
 #include "sim_clock/explore/search_budget.hpp"
+#include "sim_clock/explore/silence_watch.hpp"
 
 namespace ltsim {
 
@@ -47,7 +48,11 @@ struct MinimizeReport {
 
 class Minimizer {
  public:
-  Minimizer(World& world, const Scenario& scenario) : world_(world), explorer_(world), scenario_(scenario) {}
+  Minimizer(World& world, const Scenario& scenario)
+      : world_(world), own_explorer_(world), explorer_(*own_explorer_), scenario_(scenario) {}
+  /// @param explorer  runs the executions, in `world`
+  Minimizer(Explorer& explorer, World& world, const Scenario& scenario)
+      : world_(world), explorer_(explorer), scenario_(scenario) {}
 
   [[nodiscard]] MinimizeReport minimize(const Schedule& failing, const MinimizeOptions& options);
 
@@ -59,13 +64,30 @@ class Minimizer {
     Outcome outcome;
     std::uint64_t trace_hash = 0;
     SimTime at{0};
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, Attempt& attempt) {
+      carrier(attempt.deviations, attempt.addressed, attempt.outcome, attempt.trace_hash, attempt.at);
+    }
+  };
+  /// What there is to know of an execution that was tried.
+  struct Tried {
+    std::optional<Attempt> failure;  ///< it ended in the failure
+    std::uint64_t points = 0;
+    std::vector<SilenceWatch::Silence> silences = {};  ///< where they were asked for
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, Tried& tried) {
+      carrier(tried.failure, tried.points, tried.silences);
+    }
   };
 
   /// Replays. @return nothing if that does not end in the failure
   [[nodiscard]] std::optional<Attempt> attempt(const std::vector<Deviation>& deviations);
   /// The same from addresses; what comes back is sure to replay by its anchors.
   [[nodiscard]] std::optional<Attempt> attempt(const AddressedSchedule& addressed);
-  [[nodiscard]] std::optional<Attempt> record(Strategy& strategy, AnchorTracker& anchors);
+  [[nodiscard]] std::optional<Attempt> tried(Tried&& tried);
+  [[nodiscard]] Tried record(Strategy& strategy, AnchorTracker& anchors);
 
   /// @return whether each line was found to be needed
   bool leave_out_lines();
@@ -88,7 +110,8 @@ class Minimizer {
   [[nodiscard]] bool has_budget(double until) const noexcept { return budget_->used() < until; }
 
   World& world_;
-  Explorer explorer_;
+  std::optional<Explorer> own_explorer_;
+  Explorer& explorer_;
   const Scenario& scenario_;
   std::function<bool(const Outcome&)> is_the_failure_;
   SearchBudget* budget_ = nullptr;

@@ -92,9 +92,10 @@ std::string describe_bounds(const ProveOptions& options) {
   std::string silences = "any number of silences";
   if (bounds.silences) silences = *bounds.silences == 0 ? "no silence" : counted(*bounds.silences, "silence");
   const bool is_reduced = !bounds.preemptions && !bounds.states;
-  return fmt::format("{} and {}{}, memory {}", preemptions, silences,
+  return fmt::format("{} and {}{}, memory {}{}{}", preemptions, silences,
                      is_reduced ? ", one of each order that makes a difference" : "",
-                     to_string(options.memory));
+                     to_string(options.memory), options.findings.races ? "" : ", races off",
+                     options.findings.leaks ? "" : ", leaks off");
 }
 
 std::string describe_coverage(const ProveReport& report, const ProveOptions& options) {

@@ -181,10 +181,12 @@ std::string one_line(std::string message) {
 
 std::string to_string(const Schedule& schedule) {
   const std::string message = one_line(schedule.message);
-  std::string text =
-      fmt::format("{}\nscenario  {}\nmemory    {}\n{}outcome   {}{}{}\n", schedule_header, schedule.scenario,
-                  to_string(schedule.memory), schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
-                  to_string(schedule.outcome), message.empty() ? "" : ": ", message);
+  std::string text = fmt::format(
+      "{}\nscenario  {}\nmemory    {}\n{}{}{}{}outcome   {}{}{}\n", schedule_header, schedule.scenario,
+      to_string(schedule.memory), schedule.cpu == Cpu::many ? "" : "cpu       one-fifo\n",
+      schedule.findings.races ? "" : "races     off\n", schedule.findings.leaks ? "" : "leaks     off\n",
+      schedule.start_state == StartState::restore ? "" : "state     fork\n", to_string(schedule.outcome),
+      message.empty() ? "" : ": ", message);
   for (std::size_t i = 0; i < schedule.program.size(); ++i)
     text += fmt::format("{}{}\n", i == 0 ? "program   " : "argument  ", quoted(schedule.program[i]));
   for (const std::string& line : input_lines(schedule)) text += line + "\n";
@@ -223,6 +225,16 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
           words.size() == 2 && (words[1] == to_string(Cpu::many) || words[1] == to_string(Cpu::one_fifo));
       if (!known) return error("a cpu line says \"many\" or \"one-fifo\"");
       schedule.cpu = words[1] == to_string(Cpu::many) ? Cpu::many : Cpu::one_fifo;
+    } else if (words.front() == "races" || words.front() == "leaks") {
+      if (words.size() != 2 || (words[1] != "on" && words[1] != "off"))
+        return error(fmt::format("a {} line says \"on\" or \"off\"", words.front()));
+      (words.front() == "races" ? schedule.findings.races : schedule.findings.leaks) = words[1] == "on";
+    } else if (words.front() == "state") {
+      const bool known = words.size() == 2 && (words[1] == to_string(StartState::restore) ||
+                                               words[1] == to_string(StartState::fork));
+      if (!known) return error("a state line says \"restore\" or \"fork\"");
+      schedule.start_state =
+          words[1] == to_string(StartState::restore) ? StartState::restore : StartState::fork;
     } else if (words.front() == "outcome") {
       const std::string_view rest = rest_after_first_word(line);
       const std::size_t colon = std::min(rest.find(':'), rest.size());
@@ -249,7 +261,8 @@ tl::expected<Schedule, ScheduleError> parse_schedule(std::string_view text) {
       schedule.deviations.push_back(std::move(*deviation));
     } else {
       return error(
-          fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, cpu, outcome, "
+          fmt::format("\"{}\" begins no line of a schedule; known are scenario, memory, cpu, races, leaks, "
+                      "state, outcome, "
                       "program, argument, input, switch, "
                       "time, stall, fault, crash, choose, older",
                       words.front()));

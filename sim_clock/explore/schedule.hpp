@@ -4,6 +4,9 @@
 //   scenario  paper/time-out
 //   memory    sc
 //   cpu       one-fifo          (this line only where the machine has one processor)
+//   races     off               (this line only where data races are no failures)
+//   leaks     off               (this line only where leaks are no failures)
+//   state     fork              (this line only where each execution has a process of its own)
 //   outcome   invariant: I1: the answer to request 1 was delivered for request 2
 //   switch    kernel/main    before atomic_load segment.state #3    to emulator/main
 //   time      kernel/main    before clock_read - #2                 +20ms
@@ -43,6 +46,7 @@
 
 #include "sim_clock/check/outcome.hpp"
 #include "sim_clock/clock/virtual_clock.hpp"
+#include "sim_clock/explore/start_state.hpp"
 #include "sim_clock/world/cpu.hpp"
 #include "sim_clock/world/fault_kind.hpp"
 #include "sim_clock/world/memory_model.hpp"
@@ -82,11 +86,25 @@ struct Schedule {
   std::string message;  ///< of the outcome; one line
   Memory memory = Memory::sc;
   Cpu cpu = Cpu::many;
+  Findings findings = {};
+  StartState start_state = StartState::restore;
   std::vector<std::string> input = {};  ///< records of World::input(); together they are it
   /// Of a whole program: its path and its arguments; otherwise empty.
   std::vector<std::string> program = {};
   std::vector<Deviation> deviations;
 };
+
+/// See carried_bytes.hpp.
+template <typename Carrier>
+void carry(Carrier& carrier, Deviation& deviation) {
+  carrier(deviation.kind, deviation.anchor, deviation.to_task, deviation.passes, deviation.fault,
+          deviation.process, deviation.answer, deviation.line);
+}
+template <typename Carrier>
+void carry(Carrier& carrier, Schedule& schedule) {
+  carrier(schedule.scenario, schedule.outcome, schedule.message, schedule.memory, schedule.cpu,
+          schedule.findings, schedule.start_state, schedule.input, schedule.program, schedule.deviations);
+}
 
 /// The lines of a schedule file that hold its input, without their ends.
 [[nodiscard]] std::vector<std::string> input_lines(const Schedule& schedule);

@@ -6,7 +6,7 @@ namespace ltsim {
 
 ScheduleSearch::End ScheduleSearch::deepen(const SearchFilter& filter, std::size_t length_max,
                                            Equivalence equivalence, double until) {
-  const auto hash = [&] { return equivalence == Equivalence::exact ? trace_hash_ : strategy_.causal_hash(); };
+  const auto hash = [&] { return equivalence == Equivalence::exact ? last_.trace_hash : last_.causal_hash; };
   if (budget_.used() >= until) return End::out_of_budget;
   if (leads_to_failure({})) return End::found;
   std::unordered_set<std::uint64_t> seen{hash()};
@@ -61,24 +61,31 @@ std::vector<AddressedDeviation> ScheduleSearch::alternatives(const AddressedSche
   strategy_.list_alternatives(&filter, anywhere);
   run(schedule);
   strategy_.list_alternatives(nullptr, false);
-  return strategy_.alternatives();
+  return std::move(last_.alternatives);
 }
 
 bool ScheduleSearch::leads_to_failure(const AddressedSchedule& schedule) {
   run(schedule);
-  const Outcome& outcome = world_.scheduler().outcome();
+  const Outcome& outcome = last_.outcome;
   return !outcome.passed() && is_the_failure_(outcome) && accept_(schedule);
 }
 
 void ScheduleSearch::run(const AddressedSchedule& schedule) {
   strategy_.set_deviations(schedule);
-  try {
-    trace_hash_ = explorer_.execute(scenario_, strategy_, 0, nullptr);
-  } catch (const Explorer::NotSimulable&) {
-    // Where nobody went before there may be a call that is not simulated: no finding, and no reason to stop.
-    trace_hash_ = world_.scheduler().trace_hash();
-  }
-  budget_.use(world_.scheduler().points());
+  last_ = explorer_.apart<Tried>([this] {
+    try {
+      explorer_.execute(scenario_, strategy_, 0, nullptr);
+    } catch (const Explorer::NotSimulable&) {
+      // Where nobody went before there may be a call that is not simulated: no finding, and no reason to stop.
+    }
+    const Scheduler& scheduler = world_.scheduler();
+    return Tried{.outcome = scheduler.outcome(),
+                 .points = scheduler.points(),
+                 .trace_hash = scheduler.trace_hash(),
+                 .causal_hash = strategy_.causal_hash(),
+                 .alternatives = strategy_.alternatives()};
+  });
+  budget_.use(last_.points);
 }
 
 }  // namespace ltsim

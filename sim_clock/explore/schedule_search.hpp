@@ -51,6 +51,20 @@ class ScheduleSearch {
                                                              const SearchFilter& filter, bool anywhere);
 
  private:
+  /// What there is to know of an execution that was tried.
+  struct Tried {
+    Outcome outcome;
+    std::uint64_t points = 0;
+    std::uint64_t trace_hash = 0;
+    std::uint64_t causal_hash = 0;
+    std::vector<AddressedDeviation> alternatives = {};
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, Tried& tried) {
+      carrier(tried.outcome, tried.points, tried.trace_hash, tried.causal_hash, tried.alternatives);
+    }
+  };
+
   /// @return whether the failure came and was accepted
   [[nodiscard]] bool leads_to_failure(const AddressedSchedule& schedule);
   void run(const AddressedSchedule& schedule);
@@ -65,7 +79,7 @@ class ScheduleSearch {
   Accept accept_;
   SearchBudget& budget_;
   AddressedStrategy strategy_;
-  std::uint64_t trace_hash_ = 0;
+  Tried last_;
 };
 
 }  // namespace ltsim

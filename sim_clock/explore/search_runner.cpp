@@ -7,6 +7,7 @@ SearchRunner::SearchRunner(World& world, const Scenario& scenario, const ProveOp
   world_.coverage().forget();
   world_.set_default_memory(options.memory);
   world_.set_default_cpu(Cpu::many);
+  world_.set_findings(options.findings);
 }
 
 void SearchRunner::warm_up() {
@@ -62,6 +63,7 @@ Failure SearchRunner::tell_failure(const SearchItem& item) {
   failure.count = 1;
   ExploreOptions small;
   small.memory = options_.memory;
+  small.findings = options_.findings;
   small.minimize_seconds = options_.minimize_seconds;
   std::vector<Failure> failures;
   static_cast<void>(explorer_.add_failure(scenario_, small, failures, std::move(failure)));

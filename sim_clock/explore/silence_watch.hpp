@@ -18,6 +18,11 @@ class SilenceWatch final : public Strategy {
     std::size_t moments_count = 0;
     SimTime passed{0};
     SimTime shortest{0};  ///< of the moments
+
+    template <typename Carrier>
+    friend void carry(Carrier& carrier, Silence& silence) {
+      carrier(silence.held_up_at, silence.moments_count, silence.passed, silence.shortest);
+    }
   };
 
   SilenceWatch(ReplayStrategy& replay, const AnchorTracker& anchors) : replay_(replay), anchors_(anchors) {}

@@ -1,9 +1,16 @@
 #include "sim_clock/explore/strategies.hpp"
 
 #include "sim_clock/check/self_check.hpp"
+#include "sim_clock/explore/memory_across_forks.hpp"
 #include "sim_clock/explore/swarm_strategy.hpp"
 
 namespace ltsim {
+
+void* Strategy::operator new(std::size_t bytes) { return new_shared_memory(bytes); }
+
+void Strategy::operator delete(void* strategy, std::size_t bytes) noexcept {
+  delete_shared_memory(strategy, bytes);
+}
 
 std::vector<std::string> strategy_names() { return {"swarm", "random", "pct", "pos", "surw", "stall"}; }
 

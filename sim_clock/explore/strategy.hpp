@@ -70,6 +70,11 @@ class Strategy {
  public:
   virtual ~Strategy() = default;
 
+  /// In memory that is shared with forked processes (StartState::fork): what a strategy learns of an execution there is learned here. So
+  /// one that learns keeps what it has learned within itself, in no container that has memory elsewhere.
+  static void* operator new(std::size_t bytes);
+  static void operator delete(void* strategy, std::size_t bytes) noexcept;
+
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
 
   /// Called before the first choice of an execution. Without learn() in between, the same seed means the same

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "sim_clock/check/signal_guard.hpp"
+#include "sim_clock/explore/forked_work.hpp"
 #include "sim_clock/explore/worker_message.hpp"
 
 namespace ltsim {
@@ -15,10 +16,14 @@ const World* world_at_work = nullptr;
 WorkerProgress* progress_at_work = nullptr;
 
 // An execution that counts may take several runs: to record it, to see whether it repeats.
-void tell_position(int /*signal*/) {
-  progress_at_work->position.store(
-      (world_at_work->execution_number() << 40U) + world_at_work->scheduler().points(),
-      std::memory_order_relaxed);
+void tell_position(int signal) {
+  if (const pid_t process = ForkedWork::process(); process != 0) {
+    kill(process, signal);  // the execution is there
+    return;
+  }
+  const std::uint64_t execution = world_at_work->execution_number() + ForkedWork::processes_count();
+  progress_at_work->position.store((execution << 40U) + world_at_work->scheduler().points(),
+                                   std::memory_order_relaxed);
 }
 
 void answer_position_signal(const World& world, WorkerProgress& progress) {
@@ -41,6 +46,9 @@ class Worker {
     answer_position_signal(world_, own_);
     world_.set_default_memory(order.options.memory);
     world_.set_default_cpu(order.options.cpu);
+    world_.set_findings(order.options.findings);
+    explorer_.set_start_state(order.options.start_state);
+    if (order.scenario.prepare) order.scenario.prepare();
   }
 
   void run() {

@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/own_descriptor.hpp"
+
 namespace ltsim {
 namespace {
 
@@ -26,6 +28,7 @@ namespace {
 WorkerProcess::WorkerProcess(const std::function<void(int)>& work) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) throw_errno("socket of a worker");
+  for (int& end : ends) end = as_own_descriptor(end);
   std::fflush(nullptr);  // or the child would print it again
   const pid_t parent = getpid();
   const pid_t id = fork();

@@ -32,6 +32,9 @@ std::string path_of_processes_program() {
 }
 
 constexpr char separator = '\x1f';
+constexpr const char* binding_variable =
+    "LD_BIND_NOW";  // of the dynamic linker, which asks whether it is set
+constexpr const char* bound_by_us = "ltsim";
 
 /// Why the file is no program of ltsim-c++; empty: it is one.
 /// @param is_image  it is to be loaded by another one
@@ -92,6 +95,8 @@ std::string launch_program(const std::vector<std::string>& command, const std::v
   if (is_of_processes) setenv("GLIBC_TUNABLES", "glibc.rtld.optional_static_tls=65536", 1);
   // Addresses that are the same in each run: what depends on their order does not differ then.
   personality(static_cast<unsigned long>(personality(0xffffffff)) | ADDR_NO_RANDOMIZE);
+  // Functions of libraries are bound once, and not in each process that is forked.
+  if (getenv(binding_variable) == nullptr) setenv(binding_variable, bound_by_us, 1);
   std::vector<char*> arguments;
   for (const std::string& word : program) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -110,6 +115,8 @@ std::optional<std::vector<std::string>> take_launch_command(LaunchedProgram prog
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   unsetenv(variable);
+  if (const char* const by = getenv(binding_variable); by != nullptr && std::string_view{by} == bound_by_us)
+    unsetenv(binding_variable);
   return command;
 }
 

@@ -7,19 +7,15 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sim_clock/check/own_descriptor.hpp"
 #include "sim_clock/check/self_check.hpp"
 
 namespace ltsim {
 
-OutputCapture::OutputCapture() : file_(memfd_create("ltsim-output", MFD_CLOEXEC)) {
-  // Far above those that a program opens: it shall get the numbers that it gets without us.
-  constexpr int above = 512;
-  LTSIM_CHECK(file_ >= 0);
-  const int high = fcntl(file_, F_DUPFD_CLOEXEC, above);
-  close(file_);
-  file_ = high;
-  out_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, above);
-  error_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, above);
+OutputCapture::OutputCapture()
+    : file_(as_own_descriptor(memfd_create("ltsim-output", MFD_CLOEXEC))),
+      out_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, own_descriptors_begin)),
+      error_(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, own_descriptors_begin)) {
   LTSIM_CHECK(file_ >= 0 && fcntl(file_, F_SETFL, O_APPEND) == 0);
 }
 

@@ -15,10 +15,9 @@
 #include <fmt/format.h>
 
 #include "sim_clock/program/exit_handlers.hpp"
-#include "sim_clock/program/kept_state.hpp"
 #include "sim_clock/program/launch.hpp"
 #include "sim_clock/program/process_options.hpp"
-#include "sim_clock/program/program_scenario.hpp"
+#include "sim_clock/program/program_executions.hpp"
 
 namespace ltsim {
 namespace {
@@ -30,8 +29,10 @@ class Processes {
   Processes(const WorldOptions& options, const std::vector<Main>& mains, char** environment)
       : options_(options), mains_(mains), environment_(environment), arguments_(mains.size()) {}
 
+  void prepare() { executions_.prepare(); }
+
   void execute(World& world) {
-    kept_.restore();
+    executions_.begin();
     services_are_ready_ = false;
     services_were_stopped_ = false;
     if (options_.points_max != 0) world.set_points_max(options_.points_max);
@@ -45,7 +46,7 @@ class Processes {
     }
     for (const WorldOptions::Fault& fault : options_.faults) world.grant(fault.kind, fault.times);
     world.whenever_idle([this, &world] { look_at_services(world); });
-    run_captured(world, capture_);
+    executions_.run(world);
   }
 
  private:
@@ -57,7 +58,7 @@ class Processes {
       world.scheduler().block(services_are_ready_key, VirtualClock::never);
     {
       const GhostScope ghost;
-      if (world.incarnation(id) != 1) kept_.restore_image(id);
+      if (world.incarnation(id) != 1) executions_.begin_again(id);
       arguments_[id].begin(options_.processes[id].arguments);
     }
     const int status = mains_[id](arguments_[id].count(), arguments_[id].pointers(), environment_);
@@ -118,9 +119,8 @@ class Processes {
   const WorldOptions& options_;
   const std::vector<Main>& mains_;
   char** environment_;
-  KeptState kept_;
+  ProgramExecutions executions_;
   std::vector<MainArguments> arguments_;
-  OutputCapture capture_;
   bool services_are_ready_ = false;
   bool services_were_stopped_ = false;
 };
@@ -192,7 +192,8 @@ int run_processes(const std::vector<std::string>& arguments, char** environment,
   return run_program_command({.name = name,
                               .description = "whole programs as processes",
                               .body = [&processes](World& world) { processes.execute(world); },
-                              .program = std::move(program)},
+                              .program = std::move(program),
+                              .prepare = [&processes] { processes.prepare(); }},
                              command);
 }
 

@@ -2,6 +2,7 @@
 // operator new. Called as any program is, with no command of ltsim in its environment, a program does what it always does.
 
 #include <dlfcn.h>
+#include <malloc.h>
 
 #include <cstddef>
 #include <cstdio>
@@ -32,6 +33,9 @@ int run_in_world(int count, char** arguments, char** environment) {
       .main = program_main, .arguments = {arguments, arguments + count}, .environment = environment};
   return run_whole_program(start, *launch_command);
 }
+
+/// Tasks have thread-local storage of their own, so malloc would take them for threads, and make an arena for each.
+void make_one_arena() noexcept { mallopt(M_ARENA_MAX, 1); }
 
 /// @return null: there is no room
 void* new_block(std::size_t bytes, std::size_t alignment, const void* caller) noexcept {
@@ -72,6 +76,7 @@ extern "C" int __libc_start_main(ltsim::Main main, int count, char** arguments, 
     std::fprintf(stderr, "ltsim: %s\n", trouble->c_str());
     std::exit(3);
   }
+  ltsim::make_one_arena();
   ltsim::program_main = main;
   ProgramHeap::serve_outside_tasks(true);
   return next(&ltsim::run_in_world, count, arguments, init, fini, rtld_fini, stack_end);
@@ -84,6 +89,7 @@ extern "C" int ltsim_run_processes(int count, char** arguments, char** environme
     std::fputs("ltsim-processes: is run by ltsim: ltsim explore --process IMAGE:ARGUMENTS ...\n", stderr);
     return 2;
   }
+  ltsim::make_one_arena();
   return ltsim::run_processes({arguments + 1, arguments + count}, environment, *command);
 }
 

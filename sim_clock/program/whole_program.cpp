@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include "sim_clock/program/exit_handlers.hpp"
-#include "sim_clock/program/kept_state.hpp"
 #include "sim_clock/program/launch.hpp"
-#include "sim_clock/program/output_capture.hpp"
-#include "sim_clock/program/program_scenario.hpp"
+#include "sim_clock/program/program_executions.hpp"
 
 namespace ltsim {
 namespace {
@@ -15,15 +13,17 @@ class WholeProgram {
  public:
   explicit WholeProgram(const ProgramStart& start) : start_(start) {}
 
+  void prepare() { executions_.prepare(); }
+
   void execute(World& world) {
-    kept_.restore();
+    executions_.begin();
     arguments_.begin(start_.arguments);
     world.set_exit([&world](const World::Exit& how) { exit(world, how); });
     world.process("program").start("main", [this, &world] {
       const int status = start_.main(arguments_.count(), arguments_.pointers(), start_.environment);
       exit(world, {.status = status, .stack = __builtin_frame_address(0)});
     });
-    run_captured(world, capture_);
+    executions_.run(world);
   }
 
  private:
@@ -41,9 +41,8 @@ class WholeProgram {
   }
 
   const ProgramStart& start_;
-  KeptState kept_;
+  ProgramExecutions executions_;
   MainArguments arguments_;
-  OutputCapture capture_;
 };
 
 }  // namespace
@@ -54,7 +53,8 @@ int run_whole_program(const ProgramStart& start, const std::vector<std::string>&
   return run_program_command({.name = name,
                               .description = "a whole program",
                               .body = [&program](World& world) { program.execute(world); },
-                              .program = start.arguments},
+                              .program = start.arguments,
+                              .prepare = [&program] { program.prepare(); }},
                              command);
 }
 

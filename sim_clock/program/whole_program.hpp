@@ -1,8 +1,9 @@
 // A whole program as a scenario: its main() is task "main" of one process, and each execution begins with the memory that the program
 // had when main() was called first.
 //
-// What is put back: its variables, its heap, its thread-locals, what it has asked atexit(3) for. Not put back is what a library keeps
-// for itself (a locale, a stream's state), descriptors that an execution leaves open, and files.
+// What is put back: its variables, its heap, its thread-locals, what it has asked atexit(3) for, its descriptors (open_descriptors.hpp).
+// Not put back is what a library keeps for itself (a locale, a stream's state), and files. In a process forked for the execution
+// (StartState::fork) there is nothing to be put back.
 #pragma once
 
 #include <string>

@@ -22,6 +22,19 @@ void add_memory_option(CLI::App& command, Memory& memory) {
       ->check(CLI::IsMember({std::string{to_string(Memory::sc)}, std::string{to_string(Memory::c11)}}));
 }
 
+void add_findings_options(CLI::App& command, Findings& findings) {
+  const auto add = [&command](const std::string& name, bool& is_failure, const std::string& what) {
+    command
+        .add_option_function<std::string>(
+            name, [&is_failure](const std::string& text) { is_failure = text == "on"; },
+            what + "; \"on\" unless given")
+        ->check(CLI::IsMember({std::string{"on"}, std::string{"off"}}));
+  };
+  add("--races", findings.races, "whether a data race alone is a failure, in an execution that ends well");
+  add("--leaks", findings.leaks,
+      "whether memory that is lost, or a lock that is held at the end, is a failure");
+}
+
 std::string file_of_scenario(const std::string& folder, std::string_view scenario, std::string_view ending) {
   std::string file{scenario};
   std::replace(file.begin(), file.end(), '/', '-');

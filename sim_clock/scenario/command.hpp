@@ -46,6 +46,9 @@ void add_zoo_command(CLI::App& app, Command& chosen);
 /// --memory sc|c11
 void add_memory_option(CLI::App& command, Memory& memory);
 
+/// --races on|off, --leaks on|off
+void add_findings_options(CLI::App& command, Findings& findings);
+
 /// "out/paper-time-out.schedule" for what belongs to paper/time-out.
 [[nodiscard]] std::string file_of_scenario(const std::string& folder, std::string_view scenario,
                                            std::string_view ending);

@@ -51,6 +51,12 @@ std::string describe_limits(const ExploreArguments& arguments) {
   return fmt::format("at most {}{}{} s", executions, counted ? " and " : "", arguments.seconds);
 }
 
+/// A scenario brings its own state, a whole program has one that something must put back.
+std::string_view describe_start_state(const Scenario& scenario, StartState state) {
+  if (state == StartState::fork) return ", each execution in a process of its own";
+  return scenario.program.empty() ? "" : ", memory put back before each execution";
+}
+
 /// "  replay:  ltsim replay FILE", or how else the failure is seen again.
 void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view program,
                            const Failure& failure, const std::string& path, const FileResult& written) {
@@ -61,10 +67,13 @@ void tell_how_to_see_again(const ExploreArguments& arguments, std::string_view p
     if (!scenario.program.empty()) what = "--";
     for (const std::string& word : scenario.program) what += " " + as_shell_word(word);
     // All up to there: what the strategy has learned by then belongs to it.
-    fmt::print("  again:  {} explore --strategy {} --seed {} --jobs {} --executions {}{}{}{} {}\n", call,
-               arguments.strategy, arguments.options.seed, arguments.jobs, failure.execution,
+    fmt::print("  again:  {} explore --strategy {} --seed {} --jobs {} --executions {}{}{}{}{}{}{} {}\n",
+               call, arguments.strategy, arguments.options.seed, arguments.jobs, failure.execution,
                arguments.options.memory == Memory::sc ? "" : " --memory c11",
                arguments.options.cpu == Cpu::many ? "" : " --cpu one-fifo",
+               arguments.options.findings.races ? "" : " --races off",
+               arguments.options.findings.leaks ? "" : " --leaks off",
+               arguments.options.start_state == StartState::restore ? "" : " --state fork",
                arguments.options.keep_going ? " --keep-going" : "", what);
   } else if (written) {
     fmt::print("  replay:  {} replay {}\n", call, as_shell_word(path));
@@ -109,8 +118,9 @@ void tell_failures(const ExploreArguments& arguments, std::string_view program, 
 
 ScenarioReport explore_one_scenario(const Scenario& scenario, const ExploreArguments& arguments,
                                     std::string_view program) {
-  fmt::print("{}  seed {}, strategy {}, {}{}\n", scenario.name, arguments.options.seed, arguments.strategy,
-             describe_limits(arguments), arguments.jobs == 1 ? "" : fmt::format(", {} jobs", arguments.jobs));
+  fmt::print("{}  seed {}, strategy {}, {}{}{}\n", scenario.name, arguments.options.seed, arguments.strategy,
+             describe_limits(arguments), arguments.jobs == 1 ? "" : fmt::format(", {} jobs", arguments.jobs),
+             describe_start_state(scenario, arguments.options.start_state));
   std::fflush(stdout);  // before the first step: a hang or a crash must not lose it
   WorkerPoolReport pool_report;
   {
@@ -203,6 +213,21 @@ void add_explore_command(CLI::App& app, Command& chosen) {
           "SCHED_FIFO priorities")
       ->check(CLI::IsMember({std::string{to_string(Cpu::many)}, std::string{to_string(Cpu::one_fifo)}}));
   add_memory_option(*command, arguments->options.memory);
+  add_findings_options(*command, arguments->options.findings);
+  command
+      ->add_option_function<std::string>(
+          "--state",
+          [arguments](const std::string& state) {
+            arguments->options.start_state =
+                state == to_string(StartState::fork) ? StartState::fork : StartState::restore;
+          },
+          "how each execution comes to begin with the same state. restore: a whole program's variables, heap "
+          "and "
+          "thread-locals are put back, not what libraries keep for themselves; fork: in a process of its "
+          "own, some "
+          "thirty times slower")
+      ->check(CLI::IsMember(
+          {std::string{to_string(StartState::restore)}, std::string{to_string(StartState::fork)}}));
   command->add_flag("--keep-going", arguments->options.keep_going,
                     "do not stop at the first failure; report each different one once");
   command

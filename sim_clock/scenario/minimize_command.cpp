@@ -25,7 +25,9 @@ int minimize(const MinimizeArguments& arguments, std::string_view program) {
   const Schedule schedule = read_schedule(arguments.file);
   const Scenario& scenario = scenario_of(schedule);
   World world;
-  const MinimizeReport report = Minimizer{world, scenario}.minimize(
+  Explorer explorer{world};
+  explorer.set_start_state(schedule.start_state);
+  const MinimizeReport report = Minimizer{explorer, world, scenario}.minimize(
       schedule, {.seconds_max = std::chrono::duration<double>{arguments.seconds}});
   if (!report.reproduced) {
     throw UsageError{fmt::format(

@@ -169,6 +169,7 @@ void add_prove_command(CLI::App& app, Command& chosen) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   add_memory_option(*command, arguments->options.memory);
+  add_findings_options(*command, arguments->options.findings);
   const CLI::Option* const seconds =
       command
           ->add_option("--seconds", arguments->seconds,

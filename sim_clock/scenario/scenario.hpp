@@ -24,6 +24,8 @@ struct Scenario {
   std::string_view description;
   std::function<void(World& world)> body;
   std::vector<std::string> program = {};  ///< of a whole program: its path and its arguments
+  /// If there is one: a worker calls it before its first execution, or before it forks a process for that.
+  std::function<void()> prepare = {};
 };
 
 /// All scenarios of this program, by name; with "fuzz/NAME" for each FUZZ_TARGET(), whose bytes are World::input().

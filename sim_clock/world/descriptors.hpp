@@ -11,8 +11,10 @@ namespace ltsim {
 
 class Descriptors {
  public:
-  void reset() {
-    if (!open_.empty()) close_if([](ProcessId) { return true; });
+  /// @param closes  what the last execution has left open; otherwise it is somebody else's to close
+  void reset(bool closes) {
+    if (closes && !open_.empty()) close_if([](ProcessId) { return true; });
+    open_.clear();
   }
   void process_died(ProcessId process) {
     if (!open_.empty()) close_if([=](ProcessId owner) { return owner == process; });

@@ -179,6 +179,7 @@ std::string ProgramMemory::history(const ProgramHeap::Block& block) const {
 }
 
 void ProgramMemory::check_leaks(const void* stack) {
+  if (!world_.findings().leaks) return;
   const GhostScope ghost;
   std::vector<std::size_t> lost = lost_blocks(world_, stack);
   if (lost.empty()) return;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "sim_clock/check/own_descriptor.hpp"
 #include "sim_clock/check/self_check.hpp"
 #include "sim_clock/world/same_name.hpp"
 #include "sim_clock/world/world.hpp"
@@ -33,7 +34,7 @@ std::uint32_t offset_of(const volatile void* address) noexcept {
 }  // namespace
 
 Segments::Segments(World& world) : world_(world) {
-  memory_ = memfd_create("ltsim-segments", MFD_CLOEXEC);
+  memory_ = as_own_descriptor(memfd_create("ltsim-segments", MFD_CLOEXEC));
   LTSIM_CHECK(memory_ >= 0);
   LTSIM_CHECK(ftruncate(memory_, static_cast<off_t>(segments_max << window_shift)) == 0);
   void* const all =

@@ -109,6 +109,7 @@ void World::end_execution() noexcept {
     scheduler_.fail(OutcomeKind::data_race, describe(*race, *this));
     return;
   }
+  if (!findings_.leaks) return;
   std::string held = mutexes_.held_at_end();
   for (std::string& more : std::array{rwlocks_.held_at_end(), spin_locks_.held_at_end()}) {
     if (!more.empty()) held += (held.empty() ? "" : "; ") + more;
@@ -181,6 +182,7 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   objects_.reset();
   segments_.reset();
   checks_.reset();
+  if (!findings_.races) checks_.allow_races();
   weak_.reset();
   if (default_memory_ == Memory::c11) set_memory(Memory::c11);
   semaphores_.reset();
@@ -192,7 +194,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   thread_specific_.reset();
   random_numbers_.reset();
   signals_.reset();
-  descriptors_.reset();
+  descriptors_.reset(
+      !ProgramMemory::is_on());  // otherwise all that are open are closed, whatever has opened them
   faults_.reset();
   damages_.reset();
   fetches_.reset();

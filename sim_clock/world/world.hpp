@@ -276,6 +276,9 @@ class World {
   void set_default_cpu(Cpu cpu) noexcept { default_cpu_ = cpu; }
   /// The same for memory; Memory::sc at first.
   void set_default_memory(Memory memory) noexcept { default_memory_ = memory; }
+  /// Which findings are failures in the executions from the next one on. All of them at first.
+  void set_findings(Findings findings) noexcept { findings_ = findings; }
+  [[nodiscard]] Findings findings() const noexcept { return findings_; }
   /// An execution that has passed up to here still fails if there was a race, or else if a mutex is held.
   void end_execution() noexcept;
 
@@ -441,6 +444,7 @@ class World {
   std::size_t processes_count_ = 0;
   Cpu default_cpu_ = Cpu::many;
   Memory default_memory_ = Memory::sc;
+  Findings findings_;
   std::vector<std::string> input_records_;
   std::string input_;
   std::function<void(const Exit&)> exit_;

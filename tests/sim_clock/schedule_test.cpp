@@ -116,6 +116,19 @@ TEST(Schedule, the_one_processor_of_a_machine_is_written_and_read) {
   EXPECT_EQ(again->cpu, Cpu::one_fifo);
 }
 
+TEST(Schedule, what_is_no_failure_and_where_an_execution_begins_is_written_and_read) {
+  Schedule schedule;
+  schedule.scenario = "demo/races";
+  EXPECT_EQ(to_string(schedule).find("races"), to_string(schedule).find("demo/races") + 5);
+  EXPECT_EQ(to_string(schedule).find("state"), std::string::npos);
+  schedule.findings = {.races = false, .leaks = false};
+  schedule.start_state = StartState::fork;
+  const auto read_back = parse_schedule(to_string(schedule));
+  ASSERT_TRUE(read_back) << read_back.error().reason;
+  EXPECT_EQ(read_back->findings, schedule.findings);
+  EXPECT_EQ(read_back->start_state, StartState::fork);
+}
+
 TEST(Schedule, a_message_of_several_lines_is_written_as_one) {
   Schedule schedule{
       .scenario = "a/b", .outcome = OutcomeKind::crash, .message = "one\ntwo", .input = {}, .deviations = {}};
