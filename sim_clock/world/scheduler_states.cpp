@@ -40,10 +40,13 @@ void Scheduler::run_decider(void* scheduler) noexcept {
       }
     }
     self.running_ = self.tasks_[self.choice_.options[chosen]].get();
+    if (self.running_ != &stands) self.others_ran_ = true;
     Context::switch_between(self.decider_context_, self.running_->context);
   }
 }
 
+// Not in it: whether others ran while the running task stood at its point. That only spares it a second look at a mapping, and what
+// is mapped goes in.
 void Scheduler::add_state(StateHash& hash) const noexcept {
   hash.add(static_cast<std::uint64_t>(clock_.now().count()));
   hash.add(std::uint64_t{time_has_mattered()} << 32U | tasks_count_);

@@ -4,14 +4,19 @@
 
 #include <fcntl.h>
 #include <semaphore.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <ostream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -129,6 +134,56 @@ TEST_F(ProverTest, what_a_killed_process_has_left_on_the_heap_is_no_state) {
     return report.states;
   };
   EXPECT_LE(states(1), states(0) + 4 * (steps + 1));
+}
+
+void* map_segment() {
+  const int descriptor = shm_open("/segment", O_RDWR, 0600);
+  void* const address = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  close(descriptor);
+  return address;
+}
+
+/// Neither is how many steps there have been while a task stood before its access to a segment.
+TEST_F(ProverTest, how_long_a_task_has_stood_before_an_access_is_no_state) {
+  constexpr std::uint32_t steps = 12;
+  const ProveReport report = prove(
+      [](World& of) {
+        const std::array<std::byte, 4096> zeros{};
+        of.leave_segment("segment", zeros);
+        start_tasks(of, 2, [](std::uint32_t i) {
+          Word* const words = static_cast<Word*>(map_segment());
+          for (std::uint32_t k = 0; k < steps; ++k) words[i].store(k);
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.error, std::nullopt);
+  constexpr std::uint32_t steps_to_map = 3;  // shm_open, mmap, close
+  EXPECT_LE(report.states, 2 * (steps + steps_to_map + 1) * (steps + steps_to_map + 1));
+}
+
+/// A mapping that goes while a task stands before its access is looked for when it goes on.
+TEST_F(ProverTest, an_access_behind_an_unmapping_is_found_where_states_are_told_apart) {
+  const ProveReport report = prove(
+      [](World& of) {
+        const std::array<std::byte, 4096> zeros{};
+        of.leave_segment("segment", zeros);
+        Word is_mapped{0};
+        void* segment = nullptr;
+        of.process("program").start("one", [&] {
+          segment = map_segment();
+          is_mapped.store(1);
+          static_cast<Word*>(segment)->store(1);
+        });
+        of.process("program").start("other", [&] {
+          if (is_mapped.load() == 1) munmap(segment, 4096);
+        });
+        of.run();
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.kind, OutcomeKind::crash);
 }
 
 TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_told_apart) {
