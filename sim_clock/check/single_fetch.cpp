@@ -110,6 +110,9 @@ void SingleFetch::loaded_twice(const Word& word, const Task& task, std::uint64_t
 void SingleFetch::add_state(StateHash& hash) const noexcept {
   for (std::size_t i = 0; i < words_count_; ++i) {
     for (std::size_t task = 0; task < world_.scheduler().tasks_count(); ++task) {
+      // It loads nothing any more.
+      const Task::State state = world_.scheduler().task(static_cast<TaskId>(task)).state;
+      if (state == Task::State::killed || state == Task::State::finished) continue;
       hash.add(words_[i].fetches[task].bytes_loaded);
       hash.add(words_[i].fetches[task].value);
     }

@@ -16,10 +16,8 @@ namespace ltsim {
                                                  bool is_seq_cst = false) noexcept {
   Operation operation = world.segments().arrive(address, bytes, kind, site);
   operation.is_seq_cst = is_seq_cst;
-  const std::uint64_t points_before = world.scheduler().points();
   world.scheduler().point(operation);
-  const bool others_ran = world.scheduler().points() != points_before + 1;
-  world.segments().go_on(address, operation, others_ran);
+  world.segments().go_on(address, operation, world.scheduler().others_ran());
 }
 
 /// To memory of a whole program, if that is what runs and the address lies there.

@@ -245,6 +245,7 @@ inline bool Scheduler::gives_way(Task& task, Operation operation) noexcept {
   pending = operation;
   clock_.pass(point_cost_);
   ++points_;
+  others_ran_ = false;
   bool fair_tail = in_fair_tail();
   if (fair_tail) [[unlikely]]
     pass_fair_tail(self, pending);
@@ -530,6 +531,7 @@ std::span<const std::uint64_t> Scheduler::many_runnable_tasks(TaskId from) noexc
 void Scheduler::switch_to(Task& next) noexcept {
   Task& self = *running_;
   running_ = &next;
+  others_ran_ = true;  // while the next one stood still
   Context::switch_between(self.context, next.context);
 }
 

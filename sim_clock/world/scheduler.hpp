@@ -95,6 +95,9 @@ class Scheduler {
 
   /// Scheduling point before `operation`. Returns when the strategy lets this task go on.
   void point(Operation operation) noexcept;
+  /// While the running task stood at the point that it passed last. To be asked here: a count of its own that the caller keeps
+  /// across the point would be a word of its stack or a register, and would make many states of one (whole_state.hpp).
+  [[nodiscard]] bool others_ran() const noexcept { return others_ran_; }
 
   /// Operation::name of what is called so, for a strategy that follows steps; others are spared the work.
   template <typename Name>
@@ -288,6 +291,8 @@ class Scheduler {
   bool has_run_ = false;
   bool strategy_follows_steps_ = false;
   bool decides_apart_ = false;
+  bool others_ran_ =
+      false;  // since the running task came to the point where it stands or that it passed last
   SimTime point_cost_{point_cost};
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;

@@ -40,22 +40,30 @@ void Scheduler::run_decider(void* scheduler) noexcept {
       }
     }
     self.running_ = self.tasks_[self.choice_.options[chosen]].get();
+    if (self.running_ != &stands) self.others_ran_ = true;
     Context::switch_between(self.decider_context_, self.running_->context);
   }
 }
 
+// Not in it: whether others ran while the running task stood at its point. That only spares it a second look at a mapping, and what
+// is mapped goes in.
 void Scheduler::add_state(StateHash& hash) const noexcept {
   hash.add(static_cast<std::uint64_t>(clock_.now().count()));
   hash.add(std::uint64_t{time_has_mattered()} << 32U | tasks_count_);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     const Task& task = *tasks_[i];
+    if (task.state == Task::State::killed) {
+      // It does nothing more, and only its own process could have waited for it: where it stood makes no difference.
+      hash.add(static_cast<std::uint64_t>(task.state));
+      continue;
+    }
     const bool is_under_way = (under_way_[i / 64] >> i % 64 & 1U) != 0;
     // How block() ended is asked as soon as the task goes on, and never again.
     hash.add(static_cast<std::uint64_t>(task.state) | std::uint64_t{task.timed_out && is_under_way} << 8U |
              std::uint64_t{is_under_way} << 11U | std::uint64_t{task.is_held_up_at_point} << 12U |
              std::uint64_t{task.detached} << 9U | std::uint64_t{task.joined} << 10U);
     hash.add_word(reinterpret_cast<std::uintptr_t>(task.result));
-    if (task.state == Task::State::finished || task.state == Task::State::killed) continue;
+    if (task.state == Task::State::finished) continue;
     hash.add(static_cast<std::uint64_t>(clock_.deadline_of(task.id).count()));
     if (task.state == Task::State::blocked) {
       add_key(hash, task.wait_key);
@@ -92,7 +100,9 @@ void Scheduler::add_state(StateHash& hash) const noexcept {
     hash.add_memory(stack, static_cast<std::size_t>(top - stack));
     task.storage->add_state(hash);
   }
-  for (const SimTime until : no_processor_before_) hash.add(static_cast<std::uint64_t>(until.count()));
+  // In the past they hold nobody back.
+  for (const SimTime until : no_processor_before_)
+    hash.add(static_cast<std::uint64_t>(clock_.now() < until ? until.count() : 0));
 }
 
 }  // namespace ltsim

@@ -12,7 +12,8 @@
 // code that compares those of what is gone with those of what came in its place may go unseen.
 //
 // Words that the code does not need any more make two states of one, never one of two. There are few: neither the simulator's own
-// frames go in (kept_registers.hpp), nor what a killed process has left on the heap and nobody can come to; stacks are cleaned below.
+// frames go in (kept_registers.hpp), nor where a killed process stood and when it was started again, nor what it has left on the heap and
+// nobody can come to; stacks are cleaned below.
 #pragma once
 
 #include <cstddef>

@@ -226,7 +226,8 @@ void World::add_state(StateHash& hash) const noexcept {
     hash.add(process.random_draws_count_);
     hash.add(process.incarnation_);
     hash.add(process.crashes_);
-    hash.add(static_cast<std::uint64_t>(process.begin_.count()));
+    // Once a life has begun, when that was is asked by nobody.
+    hash.add(static_cast<std::uint64_t>(now() < process.begin_ ? process.begin_.count() : 0));
   }
 }
 

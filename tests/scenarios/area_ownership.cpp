@@ -35,10 +35,7 @@ std::string_view to_string(Use use) noexcept {
 
 void AreaOwnership::enters(ltsim::TaskId task, Use use) {
   leaves(task);
-  // Who was killed has left.
-  for (std::size_t i = visits_.size(); i-- != 0;) {
-    if (world_.scheduler().task(visits_[i].task).state == ltsim::Task::State::killed) leaves(visits_[i].task);
-  }
+  forget_killed();
   Visit visit{.task = task, .use = use};
   for (Visit& other : visits_) {
     const ltsim::Task& there = world_.scheduler().task(other.task);
@@ -48,13 +45,19 @@ void AreaOwnership::enters(ltsim::TaskId task, Use use) {
     first_conflict_ = fmt::format("{} {} while {} {}", world_.scheduler().task(task).name, to_string(use),
                                   there.name, to_string(other.use));
   }
-  visits_.push_back(visit);
+  visits_.insert(std::ranges::find_if(visits_, [&](const Visit& other) { return other.task > task; }), visit);
+}
+
+void AreaOwnership::forget_killed() noexcept {
+  for (std::size_t i = visits_.size(); i-- != 0;) {
+    if (world_.scheduler().task(visits_[i].task).state == ltsim::Task::State::killed) leaves(visits_[i].task);
+  }
 }
 
 void AreaOwnership::leaves(ltsim::TaskId task) noexcept {
   const auto visit = std::ranges::find(visits_, task, &Visit::task);
   if (visit == visits_.end()) return;
-  *visit = visits_.back();
+  std::move(visit + 1, visits_.end(), visit);
   visits_.back() = {};  // what is left over there would make two states of one
   visits_.pop_back();
 }

@@ -27,6 +27,8 @@ class AreaOwnership {
   /// The task begins to use an area; what it used before it has left.
   void enters(ltsim::TaskId task, Use use);
   void leaves(ltsim::TaskId task) noexcept;
+  /// Who was killed has left.
+  void forget_killed() noexcept;
 
   /// Whether somebody else was in the area, one of the two writing, since the task entered it.
   [[nodiscard]] bool is_disturbed(ltsim::TaskId task) const noexcept;
@@ -41,7 +43,8 @@ class AreaOwnership {
   };
 
   const ltsim::World& world_;
-  boost::container::static_vector<Visit, 8> visits_;  // more tasks than any scenario has
+  /// By task, whoever came first; more tasks than any scenario has.
+  boost::container::static_vector<Visit, 8> visits_;
   std::optional<std::string> first_conflict_;
 };
 

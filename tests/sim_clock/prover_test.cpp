@@ -4,14 +4,19 @@
 
 #include <fcntl.h>
 #include <semaphore.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <ostream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -129,6 +134,114 @@ TEST_F(ProverTest, what_a_killed_process_has_left_on_the_heap_is_no_state) {
     return report.states;
   };
   EXPECT_LE(states(1), states(0) + 4 * (steps + 1));
+}
+
+/// Where it stood when it was killed, and when its next life began, decide nothing once that has ended.
+TEST_F(ProverTest, when_and_where_a_process_was_killed_is_no_state) {
+  constexpr unsigned sleeps = 4;
+  const auto states = [](unsigned kills) {
+    const ProveReport report = prove(
+        [kills](World& of) {
+          Word word{0};
+          of.process("killed").start("main", [] {
+            for (unsigned k = 0; k < sleeps; ++k) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+          });
+          for (const char* const name : {"one", "other"}) {
+            of.process("lives").start(name, [&] {
+              std::this_thread::sleep_for(std::chrono::seconds{1});
+              for (unsigned k = 0; k < 8; ++k) word.fetch_xor(1);
+            });
+          }
+          if (kills != 0)
+            of.process("killed").may_crash({.times = kills, .restart_after = std::chrono::milliseconds{1}});
+          of.run();
+        },
+        by_states());
+    EXPECT_TRUE(report.complete);
+    EXPECT_EQ(report.error, std::nullopt);
+    return report.states;
+  };
+  const std::uint64_t without = states(0);
+  EXPECT_GT(without, 64U);
+  // If the time of each of its steps counted, there would be six times as many, and more.
+  EXPECT_LE(states(1), 4 * without);
+}
+
+void* map_segment() {
+  const int descriptor = shm_open("/segment", O_RDWR, 0600);
+  void* const address = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  close(descriptor);
+  return address;
+}
+
+/// What is to be loaded once in a transaction: that ends with its task.
+TEST_F(ProverTest, what_a_killed_process_has_loaded_is_no_state) {
+  const auto states = [](bool loads_once) {
+    const ProveReport report = prove(
+        [loads_once](World& of) {
+          const std::array<std::byte, 4096> zeros{};
+          of.leave_segment("segment", zeros);
+          if (loads_once) of.single_fetch("segment", 8, 4, "segment.length");
+          Word word{0};
+          of.process("killed").start("main", [] {
+            static_cast<void>(static_cast<Word*>(map_segment())[2].load());
+            std::this_thread::yield();
+          });
+          of.process("lives").start("main", [&] {
+            for (std::uint32_t k = 0; k < 12; ++k) word.fetch_add(1);
+          });
+          of.process("killed").may_crash({.times = 1, .restart_after = {}});
+          of.run();
+        },
+        by_states());
+    EXPECT_TRUE(report.complete);
+    EXPECT_EQ(report.error, std::nullopt);
+    return report.states;
+  };
+  EXPECT_EQ(states(true), states(false));
+}
+
+/// Neither is how many steps there have been while a task stood before its access to a segment.
+TEST_F(ProverTest, how_long_a_task_has_stood_before_an_access_is_no_state) {
+  constexpr std::uint32_t steps = 12;
+  const ProveReport report = prove(
+      [](World& of) {
+        const std::array<std::byte, 4096> zeros{};
+        of.leave_segment("segment", zeros);
+        start_tasks(of, 2, [](std::uint32_t i) {
+          Word* const words = static_cast<Word*>(map_segment());
+          for (std::uint32_t k = 0; k < steps; ++k) words[i].store(k);
+        });
+        of.run();
+      },
+      by_states());
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.error, std::nullopt);
+  constexpr std::uint32_t steps_to_map = 3;  // shm_open, mmap, close
+  EXPECT_LE(report.states, 2 * (steps + steps_to_map + 1) * (steps + steps_to_map + 1));
+}
+
+/// A mapping that goes while a task stands before its access is looked for when it goes on.
+TEST_F(ProverTest, an_access_behind_an_unmapping_is_found_where_states_are_told_apart) {
+  const ProveReport report = prove(
+      [](World& of) {
+        const std::array<std::byte, 4096> zeros{};
+        of.leave_segment("segment", zeros);
+        Word is_mapped{0};
+        void* segment = nullptr;
+        of.process("program").start("one", [&] {
+          segment = map_segment();
+          is_mapped.store(1);
+          static_cast<Word*>(segment)->store(1);
+        });
+        of.process("program").start("other", [&] {
+          if (is_mapped.load() == 1) munmap(segment, 4096);
+        });
+        of.run();
+      },
+      by_states());
+  ASSERT_TRUE(report.failure);
+  EXPECT_EQ(report.failure->outcome.kind, OutcomeKind::crash);
 }
 
 TEST_F(ProverTest, a_failure_that_a_check_remembers_is_found_where_states_are_told_apart) {

@@ -1,5 +1,6 @@
 #include "tests/scenarios/hardened/hardened_exchange.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -28,6 +29,8 @@ constexpr const char* segment = "handoff";
 constexpr ltsim::WaitKey news = ~ltsim::WaitKey{0} >> 16U;  // no address
 constexpr std::size_t payload_bytes_max = 16;
 constexpr auto time_to_spare = 1s;  // for each stage of a call
+/// Requests have numbers below 128: the answers have the others.
+constexpr unsigned requests_of_a_life_max = 16;
 
 hardened::Options options_of(const HardenedExchange& exchange) {
   hardened::Options options = exchange.options;
@@ -57,6 +60,9 @@ class HardenedSides {
         kernels_to_come_{exchange.has_rivals ? 2U : 1U} {}
 
   void run_kernel() {
+    next_request_ = std::max(next_request_, first_request_of_this_life());
+    // Those of the life before make no difference while this one opens.
+    if (!exchange_.has_rivals) monitor_.set_timeouts(options_.take_timeout, options_.answer_timeout);
     if (!exchange_.opens_together) wait_for_emulator();
     if (kernels_to_come_ != 0) {
       hardened::Master master{segment, options_, &monitor_};
@@ -171,7 +177,12 @@ class HardenedSides {
     tell_all();
   }
 
-  /// Request n is so many bytes n: no part of one is a part of another, and two in a row differ in length.
+  /// So that how many requests the life before has made, makes no difference to this one.
+  [[nodiscard]] unsigned first_request_of_this_life() const {
+    return 1 + (world_.incarnation(ltsim::current_task->process) - 1) * requests_of_a_life_max;
+  }
+
+  /// Request n is so many bytes n: no part of one is a part of another, and two in a row of one life differ in length.
   ExchangeOutcome ask(hardened::Master& master) {
     std::array<std::byte, payload_bytes_max> request;
     std::array<std::byte, payload_bytes_max> answer;

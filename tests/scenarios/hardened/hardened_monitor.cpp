@@ -31,13 +31,13 @@ HardenedMonitor::HardenedMonitor(ltsim::World& world, std::string_view master_pr
   exchanges_.reserve(usual_requests);
   world_.whenever_idle([this] { check_when_idle(); });
   world_.whenever_held_up([this](ltsim::SimTime duration) {
+    forget_the_killed();
     if (is_under_way()) held_up_ += duration;
   });
 }
 
 void HardenedMonitor::submitted(std::span<const std::byte> request) noexcept {
-  // Its sender was killed.
-  if (is_under_way()) forget_what_the_end_needed(exchanges_.back());
+  forget_the_killed();
   exchanges_.push_back({.request = Bytes(request.begin(), request.end()),
                         .answer = {},
                         .task = running().id,
@@ -141,12 +141,27 @@ void HardenedMonitor::ended(Outcome outcome) noexcept {
 }
 
 bool HardenedMonitor::is_under_way() const noexcept {
-  return !exchanges_.empty() && exchanges_.back().ended_count == 0;
+  return !exchanges_.empty() && exchanges_.back().ended_count == 0 && is_alive(exchanges_.back().task);
 }
 
 void HardenedMonitor::forget_what_the_end_needed(Exchange& exchange) noexcept {
   exchange.has_time_to_spare = exchange.was_given_up = exchange.slave_has_changed = false;
   exchange.crashes_before = 0;
+  submitted_at_ = attempt_began_at_ = held_up_ = ltsim::SimTime{0};
+}
+
+void HardenedMonitor::forget_the_killed() noexcept {
+  ownership_.forget_killed();
+  for (Holder* const holder : {&master_holder_, &slave_holder_}) {
+    if (!is_alive(holder->task)) *holder = {};
+  }
+  if (!is_alive(slave_task_)) executing_ = none;
+  if (exchanges_.empty() || is_alive(exchanges_.back().task)) return;
+  Exchange& last = exchanges_.back();
+  forget_what_the_end_needed(last);
+  // It is not delivered any more, and does not end again; only what it was told counts.
+  last.delivered_count = 0;
+  last.ended_count = 0;
 }
 
 void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
@@ -186,6 +201,7 @@ void HardenedMonitor::check_ended(const Exchange& exchange, Outcome outcome) {
 }
 
 void HardenedMonitor::attached() noexcept {
+  forget_the_killed();
   const bool is_of_master = is_master();
   world_.note([&] { return fmt::format("ATTACH {}", is_of_master ? "master" : "slave"); });
   Holder& holder = own_role();
@@ -244,6 +260,7 @@ void HardenedMonitor::check_at_end() {
 }
 
 void HardenedMonitor::check_when_idle() {
+  forget_the_killed();
   const auto sleeps = [this](ltsim::TaskId task, ltsim::OperationKind kind) {
     const ltsim::Task& sleeper = world_.scheduler().task(task);
     return sleeper.state == ltsim::Task::State::blocked && world_.scheduler().pending(sleeper).kind == kind;

@@ -107,8 +107,10 @@ class HardenedMonitor final : public protocol::ExchangeObserver {
   };
 
   [[nodiscard]] bool is_under_way() const noexcept;
-  /// So that states that differ in nothing else are the same for a proof.
-  static void forget_what_the_end_needed(Exchange& exchange) noexcept;
+  // What nobody asks for any more is forgotten: states that differ in nothing else are the same for a proof.
+  void forget_what_the_end_needed(Exchange& exchange) noexcept;
+  /// Nobody tells that somebody was killed.
+  void forget_the_killed() noexcept;
   void check_when_idle();
   void check_role(std::string_view what);
   void check_early(ltsim::SimTime full, std::string_view what);

@@ -1,5 +1,8 @@
 // The communication thread kicks the watchdog, so a scan that hangs is never noticed (RespiraWorks/Ventilator #811,
 // Zephyr #40152).
+//
+// For memory sc. With c11 the corrected program is accused, too: no store has a time by which it is seen, and a watchdog that sees a kick
+// one period late stops the scan one period late.
 
 #include <thread>
 
