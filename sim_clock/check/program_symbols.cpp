@@ -33,7 +33,7 @@ class ImageSymbols {
  public:
   explicit ImageSymbols(std::size_t image) : image_(image) {
     elf_version(EV_CURRENT);
-    const int file = open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int file = open(ProgramImage::file(image).path, O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     if (Elf* const elf = elf_begin(file, ELF_C_READ, nullptr); elf != nullptr) {
       read_tables(elf);

@@ -35,7 +35,7 @@ bool is_of_the_code_under_test(std::string_view file) noexcept {
 class DebugInformation {
  public:
   explicit DebugInformation(std::size_t image)
-      : file_(as_own_descriptor(open(ProgramImage::file(image).path.c_str(), O_RDONLY | O_CLOEXEC))) {
+      : file_(as_own_descriptor(open(ProgramImage::file(image).path, O_RDONLY | O_CLOEXEC))) {
     if (file_ >= 0) dwarf_ = dwarf_begin(file_, DWARF_C_READ);
   }
 

@@ -34,7 +34,7 @@ struct ExploreOptions {
   std::optional<std::chrono::duration<double>> seconds_max;  ///< of real time; looked at every 64 executions
   Memory memory = Memory::sc;                                ///< unless the scenario says otherwise
   Cpu cpu = Cpu::many;  ///< of the machine, unless the scenario says otherwise
-  Findings findings;
+  Findings findings = {};
   StartState start_state = StartState::restore;
   bool keep_going = false;  ///< go on after a failure and report each different one once
   /// Real time for making the schedule of each different failure small; 0: it stays as it was recorded.

@@ -10,6 +10,7 @@ class RandomStrategy final : public SamplingStrategy {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "random"; }
   [[nodiscard]] std::size_t choose_task(const TaskChoice& choice) noexcept override;
+  [[nodiscard]] bool passes_uncontended() const noexcept override { return false; }
 
  private:
   TimeMode begin() noexcept override { return TimeMode::bursts; }

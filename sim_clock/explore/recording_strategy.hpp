@@ -25,6 +25,7 @@ class RecordingStrategy final : public Strategy {
   // What is recorded is the execution that the chooser has without it: but for telling states apart, which would let go of this one as
   // one that was seen.
   [[nodiscard]] bool points_cost_time() const noexcept override { return chooser_.points_cost_time(); }
+  [[nodiscard]] bool passes_uncontended() const noexcept override { return chooser_.passes_uncontended(); }
   [[nodiscard]] bool follows_steps() const noexcept override { return chooser_.follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     chooser_.performs(task, operation);

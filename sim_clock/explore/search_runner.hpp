@@ -14,7 +14,7 @@ namespace ltsim {
 struct ProveOptions {
   ProofBounds bounds;
   Memory memory = Memory::sc;
-  Findings findings;
+  Findings findings = {};
   std::optional<std::chrono::duration<double>> seconds_max;  ///< of real time
   std::chrono::duration<double> minimize_seconds{0};
 };

@@ -110,6 +110,9 @@ class Strategy {
 
   /// Whether scheduling points take virtual time. Asked once an execution.
   [[nodiscard]] virtual bool points_cost_time() const noexcept { return true; }
+  /// Whether it takes the default before plain accesses that nobody contends for, to memory of a whole program, and is not asked there:
+  /// in code without races what could happen there can happen before as well. Asked once an execution.
+  [[nodiscard]] virtual bool passes_uncontended() const noexcept { return false; }
   /// Whether the strategy wants to be told each step by performs(). Asked once an execution.
   [[nodiscard]] virtual bool follows_steps() const noexcept { return false; }
   /// Whether choose_task() is to be called while every task stands still, so that World::whole_state() can be asked. Asked once an

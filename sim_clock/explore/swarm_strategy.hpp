@@ -41,6 +41,7 @@ class SwarmStrategy final : public Strategy {
   [[nodiscard]] std::size_t choose_age(const AgeChoice& choice) noexcept override {
     return current_->choose_age(choice);
   }
+  [[nodiscard]] bool passes_uncontended() const noexcept override { return current_->passes_uncontended(); }
   [[nodiscard]] bool follows_steps() const noexcept override { return current_->follows_steps(); }
   void performs(TaskId task, const Operation& operation) noexcept override {
     current_->performs(task, operation);

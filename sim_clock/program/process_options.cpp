@@ -15,8 +15,9 @@
 namespace ltsim {
 namespace {
 
-constexpr std::array<const char*, 8> option_names{"--process", "--service", "--crash",       "--stall",
-                                                  "--fault",   "--points",  "--exit-status", "--steady"};
+constexpr std::array<const char*, 9> option_names{"--process",     "--service", "--crash",
+                                                  "--stall",       "--fault",   "--points",
+                                                  "--exit-status", "--steady",  "--within"};
 
 /// As they were typed.
 struct Typed {
@@ -51,6 +52,10 @@ void add_options(CLI::App& app, Typed& typed, WorldOptions& options) {
       ->allow_extra_args(false)
       ->check(CLI::Range(0, 255))
       ->capture_default_str();
+  app.add_option_function<unsigned>(
+         "--within", [&options](unsigned seconds) { options.within = std::chrono::seconds{seconds}; },
+         "seconds of virtual time: a failure if all has not ended by then")
+      ->check(CLI::Range(1U, 1'000'000U));
   app.add_flag("--steady", options.is_steady,
                "nobody is slow but by --stall: time passes only when nobody can run");
   app.add_option("--points", options.points_max, "more scheduling points than this are a livelock")

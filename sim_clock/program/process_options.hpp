@@ -33,6 +33,7 @@ struct WorldOptions {
   std::vector<Fault> faults;
   std::vector<int> exit_statuses{0};  ///< that are no failure
   std::uint64_t points_max = 0;       ///< 0: the world's own
+  std::optional<SimTime> within{};    ///< longer, and the execution fails
   bool is_steady = false;             ///< World::set_steady()
 
   /// "kernel+emulator": of the scenario.

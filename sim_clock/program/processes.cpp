@@ -106,6 +106,8 @@ class Processes {
         world.unsupported(
             "a service has not waited for SIGTERM within 60 s: it must, with sigwait(3) or its kind, or be a "
             "--process");
+    } else if (options_.within && world.now() > *options_.within) {
+      tell_not_ended(world);
     } else if (!services_were_stopped_ && all_of(world, false, &has_ended)) {
       services_were_stopped_ = true;
       for (std::size_t i = 0; i < options_.processes.size(); ++i) {
@@ -114,6 +116,16 @@ class Processes {
           world.signals().send(id, SIGTERM);
       }
     }
+  }
+
+  void tell_not_ended(World& world) {
+    std::string names;
+    for (std::size_t i = 0; i < options_.processes.size(); ++i) {
+      if (!has_ended(world, static_cast<ProcessId>(i)))
+        names += (names.empty() ? "" : ", ") + options_.processes[i].name;
+    }
+    world.violated(
+        fmt::format("after {} s there are still {}", *options_.within / std::chrono::seconds{1}, names));
   }
 
   const WorldOptions& options_;
@@ -138,12 +150,13 @@ std::string copy_of(const std::string& path) {
   return is_copied ? fmt::format("/proc/self/fd/{}", to) : "";
 }
 
+/// @param path        lives as long as the program
 /// @param is_another  of a file that was loaded already
 /// @return  its main(); null: it was told why not
 Main load(const std::string& path, bool is_another) {
   const std::string file = is_another ? copy_of(path) : std::filesystem::absolute(path).string();
   const std::size_t count = ProgramImage::count();
-  ProgramImage::expect(path);
+  ProgramImage::expect(path.c_str());
   ProgramHeap::serve_outside_tasks(true);
   void* const image = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   ProgramHeap::serve_outside_tasks(false);
@@ -177,13 +190,14 @@ int run_processes(const std::vector<std::string>& arguments, char** environment,
     return own_fault;
   }
   std::vector<Main> mains;
-  std::vector<std::string> paths;
-  for (const ProcessOptions& process : options->processes) {
-    const std::string& path = process.arguments.front();
-    const Main main = load(path, std::find(paths.begin(), paths.end(), path) != paths.end());
+  const auto& all = options->processes;
+  for (auto process = all.begin(); process != all.end(); ++process) {
+    const std::string& path = process->arguments.front();
+    const bool is_another = std::any_of(
+        all.begin(), process, [&](const ProcessOptions& other) { return other.arguments.front() == path; });
+    const Main main = load(path, is_another);
     if (main == nullptr) return bad_usage;
     mains.push_back(main);
-    paths.push_back(path);
   }
   Processes processes{*options, mains, environment};
   std::vector<std::string> program{processes_program};

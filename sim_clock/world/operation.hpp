@@ -70,6 +70,10 @@ enum class OperationKind : std::uint8_t {
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
 
+[[nodiscard]] constexpr bool is_plain_access(OperationKind kind) noexcept {
+  return kind == OperationKind::read || kind == OperationKind::write;
+}
+
 [[nodiscard]] constexpr bool is_memory_access(OperationKind kind) noexcept {
   return kind <= OperationKind::atomic_update;
 }

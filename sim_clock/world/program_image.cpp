@@ -44,10 +44,10 @@ void ProgramImage::add_expected(const void* inside) {
   Wanted image{.inside = inside};
   dl_iterate_phdr(&note_wanted, &image);
   if (image.is_found) add(image.module, expected_);
-  expected_.clear();
+  expected_ = nullptr;
 }
 
-void ProgramImage::add(const dl_phdr_info& module, const std::string& path) {
+void ProgramImage::add(const dl_phdr_info& module, const char* path) {
   std::uintptr_t begin = ~std::uintptr_t{0};
   std::uintptr_t end = 0;
   std::uintptr_t code_end = 0;

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "sim_clock/world/task.hpp"
 
@@ -22,7 +21,7 @@ class ProgramImage {
  public:
   /// What each has that is not in the hot path.
   struct File {
-    std::string path;  ///< with its symbols and debug information
+    const char* path;  ///< with its symbols and debug information
     std::uintptr_t loaded_at;
   };
 
@@ -94,11 +93,12 @@ class ProgramImage {
   /// From here on no image is known: what was started is not the code under test.
   static void forget_program() noexcept { count_ = 0; }
   /// An image of that file will be loaded next: it is added when code of it begins to run.
-  static void expect(const std::string& path) { expected_ = path; }
+  /// @param path  lives as long as the program
+  static void expect(const char* path) noexcept { expected_ = path; }
   /// Code that was compiled to be looked into runs for the first time.
   /// @param inside  an address in its image
   static void begins(const void* inside) {
-    if (!expected_.empty() && !contains(inside)) add_expected(inside);
+    if (expected_ != nullptr && !contains(inside)) add_expected(inside);
   }
 
   static constexpr std::size_t images_max = processes_max;
@@ -116,12 +116,12 @@ class ProgramImage {
 
   [[nodiscard]] static std::span<const Image> images() noexcept { return {images_.data(), count_}; }
   static void add_expected(const void* inside);
-  static void add(const dl_phdr_info& module, const std::string& path);
+  static void add(const dl_phdr_info& module, const char* path);
 
   static inline std::array<Image, images_max> images_{};
-  constinit static inline std::array<File, images_max> files_{};
+  static inline std::array<File, images_max> files_{};
   static inline std::size_t count_ = 0;
-  constinit static inline std::string expected_{};  // the path; empty: none
+  static inline const char* expected_ = nullptr;  // the path
 };
 
 }  // namespace ltsim

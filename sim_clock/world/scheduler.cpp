@@ -19,6 +19,7 @@ constinit thread_local Task* current_task [[gnu::tls_model("initial-exec")]] = n
 void Scheduler::reset(Strategy& strategy, StepListener* listener) noexcept {
   strategy_ = &strategy;
   strategy_follows_steps_ = strategy.follows_steps();
+  passes_uncontended_ = strategy.passes_uncontended();
   decides_apart_ = strategy.looks_at_states();
   point_cost_ = strategy.points_cost_time() ? point_cost : SimTime{0};
   listener_ = listener;
@@ -252,21 +253,25 @@ inline bool Scheduler::gives_way(Task& task, Operation operation) noexcept {
   if (listener_ != nullptr) [[unlikely]]
     listener_->arrives(self, pending);
   if (clock_.any_armed() && clock_.next_deadline() <= clock_.now()) wake_due();
-  if (world_.faults().any_at_each_point()) [[unlikely]] {
+  const bool give_way = gives_way(self, operation);
+  // Where others must run, or there is one processor, somebody may be waiting for just this point.
+  const bool is_passed = operation.object >= first_program_object && passes_uncontended_ &&
+                         !operation.is_contended && is_plain_access(operation.kind) && !give_way &&
+                         !fair_tail && cpu_ == Cpu::many;
+  if (world_.faults().any_at_each_point() && !is_passed) [[unlikely]] {
     if (world_.faults().crash_is_possible()) world_.faults().choose_crash();
     if (self.state == Task::State::killed) leave_killed();
     if (world_.faults().can_strike(FaultKind::process_stall)) world_.faults().choose_stall();
     wait_for_processor();
     fair_tail = in_fair_tail();
   }
-  const bool give_way = gives_way(self, operation);
   if (fair_tail && give_way) [[unlikely]]
     skip_time_if_all_give_way();
-  if (clock_.any_armed() || clock_was_read_) {
+  if ((clock_.any_armed() || clock_was_read_) && !is_passed) {
     choose_slow_moment();
     fair_tail = in_fair_tail();
   }
-  if (runnable_count_ > 1) {
+  if (runnable_count_ > 1 && !is_passed) {
     // Who gives way wants somebody else to run: the default is then the next task, and this one comes last.
     const auto from = static_cast<TaskId>(self.id + (give_way || fair_tail ? 1 : 0));
     if (cpu_ != Cpu::many && pending.kind == OperationKind::yield) self.ready_since = ready_ever_++;

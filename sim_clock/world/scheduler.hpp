@@ -298,6 +298,7 @@ class Scheduler {
   std::uint64_t ready_ever_ = 0;
   bool steps_are_checked_ = false;
   bool is_steady_ = false;
+  bool passes_uncontended_ = false;  // the strategy: in this execution
   bool is_abandoned_ = false;
   Outcome outcome_;
   std::function<std::string()> describe_outcome_;  // until its message is made
