@@ -55,7 +55,7 @@ class Carrier {
   void one(std::optional<Value>& value) {
     bool is_there = value.has_value();
     one(is_there);
-    if (is_there && !value) value.emplace();
+    if (is_there && !value) value = Value{};
     if (is_there) one(*value);
   }
   template <typename First, typename Second>

@@ -34,7 +34,6 @@ class Processes {
   void execute(World& world) {
     executions_.begin();
     services_are_ready_ = false;
-    services_were_stopped_ = false;
     if (options_.points_max != 0) world.set_points_max(options_.points_max);
     if (options_.is_steady) world.set_steady();
     world.set_exit([this, &world](const World::Exit& how) { exit(world, how); });
@@ -77,6 +76,7 @@ class Processes {
     if (std::find(harmless.begin(), harmless.end(), status) == harmless.end())
       world.scheduler().fail(OutcomeKind::exit,
                              fmt::format("{} ended with status {}", options_.processes[id].name, status));
+    check_time(world);
     world.end_process(id);
   }
 
@@ -95,6 +95,7 @@ class Processes {
 
   /// Nobody can run just now.
   void look_at_services(World& world) {
+    check_time(world);
     using namespace std::chrono_literals;
     constexpr SimTime patience = 60s;
     if (!services_are_ready_) {
@@ -106,10 +107,8 @@ class Processes {
         world.unsupported(
             "a service has not waited for SIGTERM within 60 s: it must, with sigwait(3) or its kind, or be a "
             "--process");
-    } else if (options_.within && world.now() > *options_.within) {
-      tell_not_ended(world);
-    } else if (!services_were_stopped_ && all_of(world, false, &has_ended)) {
-      services_were_stopped_ = true;
+    } else if (all_of(world, false, &has_ended)) {
+      // One that is just being started again is stopped later.
       for (std::size_t i = 0; i < options_.processes.size(); ++i) {
         const auto id = static_cast<ProcessId>(i);
         if (options_.processes[i].is_service && waits_to_be_stopped(world, id))
@@ -118,7 +117,8 @@ class Processes {
     }
   }
 
-  void tell_not_ended(World& world) {
+  void check_time(World& world) {
+    if (!options_.within || world.now() <= *options_.within) return;
     std::string names;
     for (std::size_t i = 0; i < options_.processes.size(); ++i) {
       if (!has_ended(world, static_cast<ProcessId>(i)))
@@ -134,7 +134,6 @@ class Processes {
   ProgramExecutions executions_;
   std::vector<MainArguments> arguments_;
   bool services_are_ready_ = false;
-  bool services_were_stopped_ = false;
 };
 
 /// What the loader is to load, under a name of its own: it loads no file twice.

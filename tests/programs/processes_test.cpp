@@ -183,6 +183,23 @@ TEST_F(ProcessesTest, that_are_killed_begin_again_as_new) {
   EXPECT_FALSE(contains(result.output, "status 3")) << result.output;
 }
 
+TEST_F(ProcessesTest, that_are_services_are_stopped_also_when_they_are_just_started_again) {
+  build("emulator", std::string{mailbox} + emulator);
+  build("short", "int main() {}");
+  const Result result = ltsim(
+      "explore --executions 100 --service ./emulator.so --process ./short.so --crash emulator:5 "
+      "--within 10 --keep-going");
+  // Its server waits for a question that nobody asks.
+  EXPECT_TRUE(contains(result.output, "emulator@2/main waits in thread_join")) << result.output;
+  EXPECT_FALSE(contains(result.output, "after 10 s")) << result.output;
+  build("sleeper", R"(
+    #include <unistd.h>
+    int main() { sleep(100); })");
+  const Result late = ltsim("explore --process ./sleeper.so --within 10");
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_TRUE(contains(late.output, "invariant: after 10 s there are still sleeper")) << late.output;
+}
+
 TEST_F(ProcessesTest, that_are_killed_let_go_of_the_locks_of_their_files) {
   build("keeper", R"(
     #include <fcntl.h>
