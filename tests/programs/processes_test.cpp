@@ -314,28 +314,34 @@ TEST_F(ProcessesTest, are_refused_with_the_reason) {
   EXPECT_EQ(alone.output, "ltsim-processes: is run by ltsim: ltsim explore --process IMAGE:ARGUMENTS ...\n");
 }
 
+/// Of ltsim-processes: this project's own programs, unmodified, with a PLC program and a part program that are short.
+/// @param common  arguments for both of them
+/// @param kernel  arguments for the kernel alone
+std::string both_sides(const std::string& common, const std::string& kernel_alone) {
+  const std::string segment = "--segment ltsim-processes-test ";
+  return std::string{"--service \"" IMAGES_FOLDER "/plc-emulator.so:"} + segment + common +
+         " --program " SOURCES_FOLDER "/emulator_models/programs/acknowledge.il\" --process \"" IMAGES_FOLDER
+         "/cnc-kernel.so:" +
+         segment + common + " " + kernel_alone +
+         " " SOURCES_FOLDER "/kernel_mocks/programs/two_functions.nc\"";
+}
+
 TEST_F(ProcessesTest, of_the_kernel_and_the_emulator_exchange_unmodified) {
-  write("fin.il", R"(PROGRAM fin
-LD M100
-OR M101
-OR M102
-ST M120
-LD M8000
-ST M122
-ST M124
-ST M125
-ST M126
-END_PROGRAM
-)");
-  write("part.nc", "N10 M8\nN20 M30\n");
-  const Result once = run_once("plc-emulator+cnc-kernel", R"(argument  "--service"
-argument  ")" IMAGES_FOLDER R"(/plc-emulator.so:--segment ltsim-processes-test --program fin.il"
-argument  "--process"
-argument  ")" IMAGES_FOLDER R"(/cnc-kernel.so:--segment ltsim-processes-test part.nc"
-)");
-  EXPECT_EQ(once.exit_code, 0) << once.output;
-  EXPECT_TRUE(contains(once.output, "program ended after 0.")) << once.output;
-  EXPECT_TRUE(contains(once.output, "2 handshakes, 0 motions")) << once.output;
+  const Result result = ltsim("explore --executions 1 --strategy random --steady " + both_sides("", ""));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(ProcessesTest, of_the_kernel_and_the_emulator_hang_by_the_published_handoff_alone_when_one_is_killed) {
+  const std::string explore =
+      "explore --executions 30 --minimize-seconds 0 --steady --within 5 --points 10000000 --crash "
+      "plc-emulator:20 "
+      "--exit-status 0,1 ";
+  const std::string patient = "--read-timeout-ms 3600000 --fin-timeout-ms 1000";
+  const Result paper = ltsim(explore + both_sides("--protocol paper", patient));
+  EXPECT_EQ(paper.exit_code, 1);
+  EXPECT_TRUE(contains(paper.output, "after 5 s there are still plc-emulator, cnc-kernel")) << paper.output;
+  const Result hardened = ltsim(explore + both_sides("", patient));
+  EXPECT_EQ(hardened.exit_code, 0) << hardened.output;
 }
 
 }  // namespace
