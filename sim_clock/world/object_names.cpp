@@ -1,7 +1,6 @@
 #include "sim_clock/world/object_names.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,11 +27,9 @@ ObjectId ObjectNames::add(std::string_view name) {
   if (names_count_ == names_.size()) names_.emplace_back();
   std::string& stored = names_[names_count_];
   if (!is_same_name(stored, name)) {
-    // What std::string does may be the copy of it that lies in instrumented code; but this is no memory of the code under test.
-    const std::size_t watched = std::exchange(watched_accesses::written_bytes, Segments::range_bytes);
+    const UnwatchedWrites unwatched;
     stored.assign(name);
     make_one_word(stored);
-    watched_accesses::written_bytes = watched;
   }
   return static_cast<ObjectId>(++names_count_);
 }

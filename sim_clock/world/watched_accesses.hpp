@@ -24,6 +24,21 @@ inline void watch_all_writes(bool all) noexcept {
   watched_accesses::written_bytes = all ? ~std::size_t{0} : watched_accesses::read_bytes;
 }
 
+/// While it lives the simulator writes what is its own: what std::string and its kind do may be the copy of them that lies in
+/// instrumented code, and is no write of the code under test.
+class UnwatchedWrites {
+ public:
+  UnwatchedWrites() noexcept : watched_(watched_accesses::written_bytes) {
+    watched_accesses::written_bytes = Segments::range_bytes;
+  }
+  ~UnwatchedWrites() { watched_accesses::written_bytes = watched_; }
+  UnwatchedWrites(const UnwatchedWrites&) = delete;
+  UnwatchedWrites& operator=(const UnwatchedWrites&) = delete;
+
+ private:
+  std::size_t watched_;
+};
+
 [[nodiscard]] inline bool is_watched_read(const volatile void* address) noexcept {
   return reinterpret_cast<std::uintptr_t>(address) - Segments::range_begin < watched_accesses::read_bytes;
 }

@@ -11,6 +11,7 @@
 #include "sim_clock/check/race_text.hpp"
 #include "sim_clock/check/self_check.hpp"
 #include "sim_clock/world/same_name.hpp"
+#include "sim_clock/world/watched_accesses.hpp"
 
 namespace ltsim {
 
@@ -42,6 +43,7 @@ void Process::died(std::optional<SimTime> restart_after) {
   threads_created_count_ = 0;
   random_draws_count_ = 0;
   begin_ = world_.now() + *restart_after;
+  const UnwatchedWrites unwatched;
   const std::size_t tasks_before = world_.scheduler().tasks_count();
   for (const Start& start : starts_) {
     Task& task = world_.scheduler().create_task(id_, start.task, start.body);

@@ -246,7 +246,8 @@ TEST_F(ProgramsTest, are_told_what_they_do_to_their_heap) {
         block[0] = 1;
       }
       if (is("loses")) block = nullptr;
-      if (is("asks for too much")) other = new int[std::size_t{1} << 60U];
+      volatile std::size_t more_than_there_is = std::size_t{1} << 60U;
+      if (is("asks for too much")) other = new int[more_than_there_is];
       if (is("does well")) {
         block[9] = 9;
         other = static_cast<int*>(std::realloc(block, 11 * sizeof(int)));
