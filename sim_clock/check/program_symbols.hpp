@@ -14,7 +14,8 @@ struct ProgramSymbol {
 };
 
 /// @param offset  of a byte, among the variables of all images
-/// @return        the variable that it lies in; without a symbol table, or between variables, one called "variables" that is all of the image's
+/// @return        the variable that it lies in; without a symbol table, or between variables, one called "variables" that is all of
+///                the image's
 [[nodiscard]] const ProgramSymbol& symbol_at(std::uint32_t offset);
 
 }  // namespace ltsim

@@ -3,8 +3,8 @@
 //
 // Things seen are bits of one table, by hash: two of them may share a bit, and the second then counts as
 // seen. Read new_in_execution() right after an execution, before the same choices are run again: a second time
-// nothing is new (ExecutionSummary::new_states). The table is shared with forked processes. The hashes hold places in the code and numbers of tasks and segments, no addresses: the count is the
-// same in every process.
+// nothing is new (ExecutionSummary::new_states). The table is shared with forked processes. The hashes hold places
+// in the code and numbers of tasks and segments, no addresses: the count is the same in every process.
 #pragma once
 
 #include <cstddef>

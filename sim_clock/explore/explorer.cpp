@@ -47,8 +47,7 @@ std::string_view why_runs_differ(const Scenario& scenario, StartState state) {
   if (scenario.program.empty())
     return "a variable of the code under test or of the scenario survives from one execution to the next";
   return "the program's memory was put back between them, but not what libraries keep for themselves, nor "
-         "files; "
-         "\"--state fork\" gives each execution a process of its own";
+         "files; \"--state fork\" gives each execution a process of its own";
 }
 
 }  // namespace

@@ -37,11 +37,4 @@ void KeptState::restore_variables(std::size_t image) {
   std::memcpy(ProgramImage::variables(image).data(), variables_[image].data(), variables_[image].size());
 }
 
-void MainArguments::begin(const std::vector<std::string>& words) {
-  words_ = words;
-  pointers_.clear();
-  for (std::string& word : words_) pointers_.push_back(word.data());
-  pointers_.push_back(nullptr);
-}
-
 }  // namespace ltsim

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "sim_clock/world/program_image.hpp"
@@ -28,21 +27,6 @@ class KeptState {
   void restore_variables(std::size_t image);
 
   std::array<std::vector<std::byte>, ProgramImage::images_max> variables_;
-};
-
-/// argc and argv of a main(), which may change the strings and the array.
-class MainArguments {
- public:
-  /// As they are at the begin of main().
-  /// @param words  the program's path first
-  void begin(const std::vector<std::string>& words);
-
-  [[nodiscard]] int count() const noexcept { return static_cast<int>(words_.size()); }
-  [[nodiscard]] char** pointers() noexcept { return pointers_.data(); }
-
- private:
-  std::vector<std::string> words_;
-  std::vector<char*> pointers_;
 };
 
 }  // namespace ltsim

@@ -31,6 +31,14 @@ std::string path_of_processes_program() {
   return std::filesystem::read_symlink("/proc/self/exe", error).replace_filename(processes_program).string();
 }
 
+/// Of images, which are loaded later: glibc keeps little room for those.
+void make_room_for_thread_locals() {
+  constexpr const char* variable = "GLIBC_TUNABLES";
+  const char* const before = getenv(variable);
+  const std::string room = "glibc.rtld.optional_static_tls=65536";
+  setenv(variable, before == nullptr ? room.c_str() : (std::string{before} + ":" + room).c_str(), 1);
+}
+
 constexpr char separator = '\x1f';
 constexpr const char* binding_variable =
     "LD_BIND_NOW";  // of the dynamic linker, which asks whether it is set
@@ -91,8 +99,7 @@ std::string launch_program(const std::vector<std::string>& command, const std::v
   for (const std::string& word : command) joined += word + separator;
   setenv(variable_of(is_of_processes ? LaunchedProgram::processes : LaunchedProgram::whole), joined.c_str(),
          1);
-  // Room for the thread-locals of images, which are loaded later.
-  if (is_of_processes) setenv("GLIBC_TUNABLES", "glibc.rtld.optional_static_tls=65536", 1);
+  if (is_of_processes) make_room_for_thread_locals();
   // Addresses that are the same in each run: what depends on their order does not differ then.
   personality(static_cast<unsigned long>(personality(0xffffffff)) | ADDR_NO_RANDOMIZE);
   // Functions of libraries are bound once, and not in each process that is forked.

@@ -1,7 +1,6 @@
 #include "sim_clock/program/process_options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <filesystem>
 #include <string_view>
@@ -15,10 +14,6 @@
 namespace ltsim {
 namespace {
 
-constexpr std::array<const char*, 9> option_names{"--process",     "--service", "--crash",
-                                                  "--stall",       "--fault",   "--points",
-                                                  "--exit-status", "--steady",  "--within"};
-
 /// As they were typed.
 struct Typed {
   std::vector<std::string> processes;
@@ -29,6 +24,7 @@ struct Typed {
 };
 
 void add_options(CLI::App& app, Typed& typed, WorldOptions& options) {
+  app.set_help_flag();
   const auto one_each = [](CLI::Option* option) {
     option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   };
@@ -185,16 +181,21 @@ tl::expected<WorldOptions, std::string> parse_process_options(const std::vector<
 }
 
 std::vector<std::string> take_process_options(std::vector<std::string>& command) {
+  CLI::App app;
+  Typed typed;
+  WorldOptions options;
+  add_options(app, typed, options);
   std::vector<std::string> taken;
   std::vector<std::string> left;
   for (std::size_t i = 0; i < command.size(); ++i) {
     const std::string& word = command[i];
-    const bool is_ours = std::any_of(option_names.begin(), option_names.end(), [&](std::string_view name) {
-      return word == name || (word.starts_with(name) && word[name.size()] == '=');
-    });
-    (is_ours ? taken : left).push_back(word);
-    const bool has_value = is_ours && word != "--steady" && word.find('=') == std::string::npos;
-    if (has_value && i + 1 < command.size()) taken.push_back(command[++i]);
+    const std::size_t equals = word.find('=');
+    const CLI::Option* const option =
+        word.starts_with("--") ? app.get_option_no_throw(word.substr(0, equals)) : nullptr;
+    (option == nullptr ? left : taken).push_back(word);
+    const bool value_follows =
+        option != nullptr && option->get_items_expected_max() != 0 && equals == std::string::npos;
+    if (value_follows && i + 1 < command.size()) taken.push_back(command[++i]);
   }
   command = std::move(left);
   return taken;
@@ -206,9 +207,8 @@ std::string process_options_help() {
   WorldOptions options;
   add_options(app, typed, options);
   std::string text = "\nWhole programs as processes of one world, instead of scenarios:\n";
-  for (const CLI::Option* const option : app.get_options()) {
-    if (option->get_name() != "--help") text += CLI::Formatter{}.make_option(option, false);
-  }
+  for (const CLI::Option* const option : app.get_options())
+    text += CLI::Formatter{}.make_option(option, false);
   return text;
 }
 

@@ -16,6 +16,7 @@
 
 #include "sim_clock/program/exit_handlers.hpp"
 #include "sim_clock/program/launch.hpp"
+#include "sim_clock/program/main_arguments.hpp"
 #include "sim_clock/program/process_options.hpp"
 #include "sim_clock/program/program_executions.hpp"
 

@@ -38,34 +38,22 @@ void refuse_control(int descriptor, int command) noexcept {
 
 }  // namespace
 
-// The mode is there only if a file may be made; code with -D_FILE_OFFSET_BITS=64 calls the second name.
-#define LTSIM_OPEN(name)                                     \
-  extern "C" int name(const char* path, int flags, ...) {    \
-    mode_t mode = 0;                                         \
-    if (makes_a_file(flags)) {                               \
-      va_list list;                                          \
-      va_start(list, flags);                                 \
-      mode = va_arg(list, mode_t);                           \
-      va_end(list);                                          \
-    }                                                        \
-    return note_opened(LTSIM_NEXT(name)(path, flags, mode)); \
+// The mode is there only if a file may be made; code with -D_FILE_OFFSET_BITS=64 calls the names with 64.
+#define LTSIM_OPEN(function, parameters, arguments)     \
+  extern "C" int function parameters {                  \
+    mode_t mode = 0;                                    \
+    if (makes_a_file(flags)) {                          \
+      va_list list;                                     \
+      va_start(list, flags);                            \
+      mode = va_arg(list, mode_t);                      \
+      va_end(list);                                     \
+    }                                                   \
+    return note_opened(LTSIM_NEXT(function) arguments); \
   }
-LTSIM_OPEN(open)
-LTSIM_OPEN(open64)
-
-#define LTSIM_OPENAT(name)                                            \
-  extern "C" int name(int folder, const char* path, int flags, ...) { \
-    mode_t mode = 0;                                                  \
-    if (makes_a_file(flags)) {                                        \
-      va_list list;                                                   \
-      va_start(list, flags);                                          \
-      mode = va_arg(list, mode_t);                                    \
-      va_end(list);                                                   \
-    }                                                                 \
-    return note_opened(LTSIM_NEXT(name)(folder, path, flags, mode));  \
-  }
-LTSIM_OPENAT(openat)
-LTSIM_OPENAT(openat64)
+LTSIM_OPEN(open, (const char* path, int flags, ...), (path, flags, mode))
+LTSIM_OPEN(open64, (const char* path, int flags, ...), (path, flags, mode))
+LTSIM_OPEN(openat, (int folder, const char* path, int flags, ...), (folder, path, flags, mode))
+LTSIM_OPEN(openat64, (int folder, const char* path, int flags, ...), (folder, path, flags, mode))
 
 extern "C" int creat(const char* path, mode_t mode) { return note_opened(LTSIM_NEXT(creat)(path, mode)); }
 extern "C" int creat64(const char* path, mode_t mode) { return note_opened(LTSIM_NEXT(creat64)(path, mode)); }

@@ -86,6 +86,12 @@ class ProgramHeap {
   static void restore();
   /// What was allocated since the last call belongs to the image of the next number, from 0.
   static void end_of_image() { images_.push_back({.blocks_end = blocks_.size(), .bytes_end = used_bytes_}); }
+  /// @param block  of before main()
+  [[nodiscard]] static std::size_t image_of(const Block& block) noexcept {
+    std::size_t image = 0;
+    while (image + 1 < images_.size() && block.offset >= images_[image].bytes_end) ++image;
+    return image;
+  }
   /// As restore(), for the blocks of one image: its process begins again.
   static void restore_image(std::size_t image);
 

@@ -55,8 +55,8 @@ class ProgramImage {
 
   struct Site {
     std::size_t image = 0;
-    std::uintptr_t linked_address =
-        0;  ///< where the image's headers say that it is: what debug information counts in
+    /// Where the image's headers say that it is: what debug information counts in.
+    std::uintptr_t linked_address = 0;
   };
   /// @param site  from site_of(), not 0
   [[nodiscard]] static Site find_site(std::uint32_t site) noexcept;

@@ -31,6 +31,12 @@ std::string_view short_name(const Task& task) noexcept {
   return name.substr(name.find('/') + 1);
 }
 
+/// "kernel@2": its process, in the life that it belongs to.
+std::string_view life_of(const Task& task) noexcept {
+  const std::string_view name = task.name;
+  return name.substr(0, name.find('/'));
+}
+
 std::string_view verb(OperationKind kind) noexcept {
   if (!is_memory_access(kind)) return to_string(kind);
   return changes_memory(kind) ? "writes" : "reads";
@@ -182,6 +188,14 @@ void ProgramMemory::check_leaks(const void* stack) {
   if (!world_.findings().leaks) return;
   const GhostScope ghost;
   std::vector<std::size_t> lost = lost_blocks(world_, stack);
+  // Nothing of another process is lost by this one, and what a killed life has left the system takes back.
+  const Scheduler& scheduler = world_.scheduler();
+  const Task& self = *scheduler.running();
+  std::erase_if(lost, [&](std::size_t each) {
+    const ProgramHeap::Block& block = ProgramHeap::blocks()[each];
+    return block.owner == ProgramHeap::no_owner ? ProgramHeap::image_of(block) != self.process
+                                                : life_of(scheduler.task(block.owner)) != life_of(self);
+  });
   if (lost.empty()) return;
   world_.scheduler().fail_described(OutcomeKind::leak, [this, lost = std::move(lost)] {
     std::string text;

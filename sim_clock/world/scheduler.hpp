@@ -291,8 +291,8 @@ class Scheduler {
   bool has_run_ = false;
   bool strategy_follows_steps_ = false;
   bool decides_apart_ = false;
-  bool others_ran_ =
-      false;  // since the running task came to the point where it stands or that it passed last
+  // Since the running task came to the point where it stands or that it passed last.
+  bool others_ran_ = false;
   SimTime point_cost_{point_cost};
   Cpu cpu_ = Cpu::many;
   std::uint64_t ready_ever_ = 0;

@@ -196,8 +196,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   thread_specific_.reset();
   random_numbers_.reset();
   signals_.reset();
-  descriptors_.reset(
-      !ProgramMemory::is_on());  // otherwise all that are open are closed, whatever has opened them
+  // Of whole programs all that are left open are closed, whatever has opened them.
+  descriptors_.reset(!ProgramMemory::is_on());
   faults_.reset();
   damages_.reset();
   fetches_.reset();

@@ -1,42 +1,23 @@
 // Whole programs as the processes of one world: images that ltsim-c++ --process has built, loaded side by side.
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 #include <gtest/gtest.h>
 
-#include "tests/support/shell.hpp"
+#include "tests/programs/explore_test.hpp"
 
 namespace {
 
-using Result = test_support::ShellResult;
+using program_tests::Result;
 
-class ProcessesTest : public testing::Test {
+class ProcessesTest : public program_tests::ExploreTest {
  protected:
-  [[nodiscard]] Result shell(const std::string& line) const {
-    return test_support::run_in(folder_.path(), line);
-  }
-  [[nodiscard]] Result ltsim(const std::string& arguments) const {
-    return shell(LTSIM_PROGRAM " " + arguments);
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream{folder_.path() / name} << text;
-  }
   /// NAME.so from this source.
   void build(const std::string& name, const std::string& source) const {
     write(name + ".cpp", source);
-    std::string line = "LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " --process -std=c++20 -O1 ";
-    const Result built = shell(line.append(name).append(".cpp -o ").append(name).append(".so"));
+    const Result built = compile("--process " + name + ".cpp -o " + name + ".so");
     ASSERT_EQ(built.exit_code, 0) << built.output;
-  }
-  [[nodiscard]] std::string read(const char* name) const {
-    std::ifstream file{folder_.path() / name};
-    return {std::istreambuf_iterator<char>{file}, {}};
-  }
-  [[nodiscard]] static bool contains(const std::string& text, std::string_view what) {
-    return text.find(what) != std::string::npos;
   }
   /// What the processes write in an execution without any deviation, and how that ends.
   [[nodiscard]] Result run_once(const std::string& scenario, const std::string& arguments) const {
@@ -45,8 +26,6 @@ class ProcessesTest : public testing::Test {
                                arguments);
     return ltsim("replay once.schedule");
   }
-
-  test_support::TemporaryFolder folder_;
 };
 
 /// What both sides of a mailbox in shared memory begin with.
@@ -181,6 +160,25 @@ TEST_F(ProcessesTest, that_are_killed_begin_again_as_new) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(contains(result.output, "exit: emulator ended with status 7")) << result.output;
   EXPECT_FALSE(contains(result.output, "status 3")) << result.output;
+}
+
+TEST_F(ProcessesTest, that_are_killed_have_lost_nothing) {
+  build("keeper", R"(
+    #include <unistd.h>
+    static int* kept = nullptr;
+    [[gnu::noinline]] void fill() { kept = new int{1}; }
+    int main(int count, char**) {
+      fill();
+      usleep(1000);
+      if (count == 1) delete kept;
+      kept = nullptr;
+    })");
+  const Result silent =
+      ltsim("explore --executions 200 --process ./keeper.so --process ./keeper.so --crash keeper:1");
+  EXPECT_EQ(silent.exit_code, 0) << silent.output;
+  const Result told = ltsim("explore --process ./keeper.so --process ./keeper.so:lose");
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_TRUE(contains(told, "leak: heap.main-1 is lost: 4 bytes, allocated at keeper.cpp:4")) << told.output;
 }
 
 TEST_F(ProcessesTest, that_are_services_are_stopped_also_when_they_are_just_started_again) {
