@@ -86,14 +86,21 @@ class ImageSymbols {
                      .bytes = static_cast<std::uint32_t>(ProgramImage::variables(image_).size())};
 };
 
+const ImageSymbols& symbols_of(std::size_t image) {
+  const GhostScope ghost;  // the file is the host's, and so is what the exit of this process has to destroy
+  static std::array<std::unique_ptr<ImageSymbols>, ProgramImage::images_max> symbols;
+  if (symbols[image] == nullptr) symbols[image] = std::make_unique<ImageSymbols>(image);
+  return *symbols[image];
+}
+
 }  // namespace
 
 const ProgramSymbol& symbol_at(std::uint32_t offset) {
-  const GhostScope ghost;  // the file is the host's
-  static std::array<std::unique_ptr<ImageSymbols>, ProgramImage::images_max> symbols;
-  const std::size_t image = ProgramImage::image_of_variable(offset);
-  if (symbols[image] == nullptr) symbols[image] = std::make_unique<ImageSymbols>(image);
-  return symbols[image]->at(offset);
+  return symbols_of(ProgramImage::image_of_variable(offset)).at(offset);
+}
+
+void read_symbols() {
+  for (std::size_t image = 0; image < ProgramImage::count(); ++image) static_cast<void>(symbols_of(image));
 }
 
 }  // namespace ltsim

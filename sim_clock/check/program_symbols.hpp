@@ -18,4 +18,7 @@ struct ProgramSymbol {
 ///                the image's
 [[nodiscard]] const ProgramSymbol& symbol_at(std::uint32_t offset);
 
+/// Reads the tables of all images now: processes that are forked from here on need not.
+void read_symbols();
+
 }  // namespace ltsim

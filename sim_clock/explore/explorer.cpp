@@ -154,19 +154,28 @@ ExploreReport Explorer::explore(const Scenario& scenario, Strategy& strategy, co
 }
 
 Explorer::Ended Explorer::run(const Scenario& scenario, Strategy& strategy, std::uint64_t seed) {
-  return apart<Ended>([&] {
+  Ended ended = apart<Ended>([&] {
     const std::uint64_t hash = execute(scenario, strategy, seed, nullptr);
     const Scheduler& scheduler = world_.scheduler();
     return Ended{
         .outcome = scheduler.outcome(),
         .result = {.trace_hash = hash, .decisions = scheduler.decisions(), .points = scheduler.points()},
-        .new_states = world_.coverage().new_in_execution()};
+        .new_states = world_.coverage().new_in_execution(),
+        .tasks = scheduler.tasks_count()};
   });
+  if (forks_) world_.scheduler().pool_tasks(ended.tasks);
+  return ended;
+}
+
+void Explorer::set_start_state(StartState state) {
+  forks_ = nullptr;
+  if (state != StartState::fork) return;
+  forks_ = std::make_unique<ForkedWork>();
+  read_symbols();
 }
 
 void Explorer::look_up(const std::vector<std::uint32_t>& sites) {
   for (const std::uint32_t site : sites) static_cast<void>(source_location(site));
-  static_cast<void>(symbol_at(0));
 }
 
 bool Explorer::repeats(const Scenario& scenario, Strategy& strategy, std::uint64_t seed, std::uint64_t hash) {

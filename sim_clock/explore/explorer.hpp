@@ -102,9 +102,7 @@ class Explorer {
 
   /// StartState::restore at first. With StartState::fork the world of this process sees no execution: what there is to know of one is what
   /// the functions here return.
-  void set_start_state(StartState state) {
-    forks_ = state == StartState::fork ? std::make_unique<ForkedWork>() : nullptr;
-  }
+  void set_start_state(StartState state);
   [[nodiscard]] StartState start_state() const noexcept {
     return forks_ ? StartState::fork : StartState::restore;
   }
@@ -140,8 +138,8 @@ class Explorer {
   template <typename Result>
   Result apart(const std::function<Result()>& work) {
     if (!forks_) return work();
+    const std::size_t known = sites_looked_up().size();
     auto found = forks_->run<WithSites<Result>, NotSimulable>([&] {
-      const std::size_t known = sites_looked_up().size();
       Result result = work();
       const auto sites = sites_looked_up().subspan(known);
       return WithSites<Result>{.result = std::move(result), .sites = {sites.begin(), sites.end()}};
@@ -160,10 +158,11 @@ class Explorer {
     Outcome outcome;
     ExecutionResult result;
     std::uint64_t new_states = 0;
+    std::size_t tasks = 0;
 
     template <typename Carrier>
     friend void carry(Carrier& carrier, Ended& ended) {
-      carrier(ended.outcome, ended.result, ended.new_states);
+      carrier(ended.outcome, ended.result, ended.new_states, ended.tasks);
     }
   };
 

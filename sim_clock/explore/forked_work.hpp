@@ -71,6 +71,7 @@ class ForkedWork {
   /// @param status  of wait(2)
   [[noreturn]] static void die_of(int status) noexcept;
   void run_apart(const std::function<void()>& work);
+  [[nodiscard]] static pid_t fork_beside() noexcept;
 
   static inline volatile pid_t process_ = 0;
   static inline volatile std::uint64_t processes_count_ = 0;

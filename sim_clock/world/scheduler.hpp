@@ -52,6 +52,9 @@ class Scheduler {
   /// The task starts to run when the strategy first chooses it.
   /// @param name  unique within the process
   Task& create_task(ProcessId process, std::string_view name, std::function<void()> body);
+  /// Makes room for so many tasks now: processes that are forked from here on need not.
+  /// @param count  at most tasks_max
+  void pool_tasks(std::size_t count);
   void set_points_max(std::uint64_t points) noexcept {
     points_max_ = points;
     fair_tail_begin_ = points / 2;

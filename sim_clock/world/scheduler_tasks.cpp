@@ -11,17 +11,21 @@
 
 namespace ltsim {
 
+void Scheduler::pool_tasks(std::size_t count) {
+  while (tasks_.size() < count) {
+    tasks_.push_back(std::make_unique<Task>());
+    tasks_.back()->storage = std::make_unique<TaskStorage>();
+  }
+}
+
 Task& Scheduler::create_task(ProcessId process, std::string_view name, std::function<void()> body) {
   if (tasks_count_ == tasks_max) {
     fail(OutcomeKind::unsupported, fmt::format("more than {} tasks in one world", tasks_max));
     return *tasks_.back();  // during set-up; nothing will run
   }
-  const bool is_fresh = tasks_count_ == tasks_.size();
-  if (is_fresh) {
-    tasks_.push_back(std::make_unique<Task>());
-    tasks_.back()->storage = std::make_unique<TaskStorage>();
-  }
+  pool_tasks(tasks_count_ + 1);
   Task& task = *tasks_[tasks_count_];
+  const bool is_fresh = task.name.empty();
   set_name(task, process, name);
   for (std::size_t i = 0; i < tasks_count_; ++i) {
     if (!is_same_name(tasks_[i]->name, task.name)) continue;
