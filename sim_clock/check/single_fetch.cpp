@@ -46,6 +46,8 @@ bool ends_transaction(OperationKind kind) noexcept {
     case OperationKind::thread_timedjoin:
     case OperationKind::signal_wait:
     case OperationKind::signal_send:
+    case OperationKind::semop:
+    case OperationKind::semctl:
       return true;
     default:
       return false;

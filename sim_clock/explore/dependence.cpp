@@ -48,6 +48,8 @@ Domain domain_of(OperationKind kind) noexcept {
     case OperationKind::spin_trylock:
     case OperationKind::spin_unlock:
     case OperationKind::barrier_wait:
+    case OperationKind::semop:
+    case OperationKind::semctl:
       return Domain::object;
     case OperationKind::cond_wait:
     case OperationKind::cond_timedwait:

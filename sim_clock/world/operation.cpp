@@ -118,6 +118,10 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "signal_wait";
     case OperationKind::signal_send:
       return "signal_send";
+    case OperationKind::semop:
+      return "semop";
+    case OperationKind::semctl:
+      return "semctl";
   }
   return "?";
 }
@@ -136,6 +140,8 @@ bool changes_what_others_see(OperationKind kind) noexcept {
     case OperationKind::shm_unlink:
     case OperationKind::shm_resize:
     case OperationKind::signal_send:
+    case OperationKind::semop:
+    case OperationKind::semctl:
       return true;
     default:
       return false;

@@ -66,6 +66,8 @@ enum class OperationKind : std::uint8_t {
   thread_timedjoin,
   signal_wait,
   signal_send,
+  semop,
+  semctl,
 };
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
@@ -85,7 +87,7 @@ enum class OperationKind : std::uint8_t {
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
 [[nodiscard]] constexpr bool can_be_polling(OperationKind kind) noexcept {
   // Asked at each scheduling point.
-  static_assert(static_cast<unsigned>(OperationKind::signal_send) < 64, "the last kind has a bit, too");
+  static_assert(static_cast<unsigned>(OperationKind::semctl) < 64, "the last kind has a bit, too");
   constexpr std::uint64_t polling = [] {
     std::uint64_t bits = 0;
     for (const OperationKind looks :
@@ -95,7 +97,7 @@ enum class OperationKind : std::uint8_t {
           OperationKind::mutex_trylock, OperationKind::shm_open, OperationKind::shm_status,
           OperationKind::clock_read, OperationKind::yield, OperationKind::rwlock_tryrdlock,
           OperationKind::rwlock_trywrlock, OperationKind::spin_lock, OperationKind::spin_trylock,
-          OperationKind::thread_tryjoin}) {
+          OperationKind::thread_tryjoin, OperationKind::semop, OperationKind::semctl}) {
       bits |= std::uint64_t{1} << static_cast<unsigned>(looks);
     }
     return bits;

@@ -82,9 +82,6 @@ int Segments::open(std::string_view path, int flags) noexcept {
     return -1;
   }
   if (segment == nullptr) {
-    if (segments_count_ == segments_max) {
-      world_.unsupported(fmt::format("more than {} shared memory objects in one execution", segments_max));
-    }
     segment = &create(name);
   } else if ((flags & O_TRUNC) != 0) {
     segment->bytes = 0;
@@ -113,6 +110,8 @@ void Segments::leave(std::string_view path, std::span<const std::byte> content) 
 }
 
 Segments::Segment& Segments::create(std::string_view name) {
+  if (segments_count_ == segments_max)
+    world_.unsupported(fmt::format("more than {} shared memory objects in one execution", segments_max));
   Segment& segment = segments_[segments_count_++];
   if (!is_same_name(segment.name, name)) segment.name.assign(name);
   segment.object = world_.objects().add(name);
@@ -218,8 +217,11 @@ void* Segments::map(std::size_t bytes, int protection, int flags, int descriptor
   if ((flags & (MAP_PRIVATE | MAP_FIXED)) != 0) {
     world_.unsupported("mmap of a shared memory object with MAP_PRIVATE or MAP_FIXED");
   }
-  const std::size_t index = index_of(*segment);
-  const std::size_t first = (current_task->process * segments_max + index) * mappings_max;
+  return map_window(index_of(*segment), begin + bytes, writable) + begin;
+}
+
+std::byte* Segments::map_window(std::size_t segment, std::size_t bytes, bool writable) noexcept {
+  const std::size_t first = (current_task->process * segments_max + segment) * mappings_max;
   for (std::size_t number = first; number < first + mappings_max; ++number) {
     Window& window = windows_[number];
     if (window.mapped) continue;
@@ -227,17 +229,49 @@ void* Segments::map(std::size_t bytes, int protection, int flags, int descriptor
     if (!window.has_memory) {
       const GhostScope ghost;
       void* const mapped = mmap(address, segment_bytes_max, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED,
-                                memory_, static_cast<off_t>(index << window_shift));
+                                memory_, static_cast<off_t>(segment << window_shift));
       LTSIM_CHECK(mapped == address);
       window.has_memory = true;
     }
     window.mapped = true;
     window.writable = writable;
-    window.bytes = begin + bytes;
-    return address + begin;
+    window.bytes = bytes;
+    return address;
   }
+  const GhostScope ghost;
   world_.unsupported(fmt::format("more than {} mappings of one segment in one process", mappings_max));
-  return MAP_FAILED;
+  return nullptr;
+}
+
+std::size_t Segments::create_unnamed(std::string_view name, std::size_t bytes) {
+  if (bytes > segment_bytes_max)
+    world_.unsupported(fmt::format("a shared memory object of more than {} bytes", segment_bytes_max));
+  Segment& segment = create(name);
+  segment.linked = false;
+  grow(segment, bytes);
+  return index_of(segment);
+}
+
+void* Segments::attach(std::size_t segment, std::size_t bytes, bool writable) noexcept {
+  return map_window(segment, bytes, writable);
+}
+
+int Segments::detach(const void* address) noexcept {
+  const std::size_t number = window_of(address);
+  if (!contains(address) || offset_of(address) != 0 || !windows_[number].mapped ||
+      process_of_window(number) != current_task->process) {
+    errno = EINVAL;
+    return -1;
+  }
+  windows_[number].mapped = false;
+  return 0;
+}
+
+std::size_t Segments::mappings_of(std::size_t segment) const noexcept {
+  std::size_t count = 0;
+  for (std::size_t number = 0; number < windows_.size(); ++number)
+    count += segment_of_window(number) == segment && windows_[number].mapped ? 1U : 0U;
+  return count;
 }
 
 int Segments::unmap(void* address, std::size_t bytes) noexcept {

@@ -72,6 +72,18 @@ class Segments {
   void* map(std::size_t bytes, int protection, int flags, int descriptor, off_t offset) noexcept;
   int unmap(void* address, std::size_t bytes) noexcept;
 
+  // Segments that no name leads to, for the running task's System V calls.
+  /// @param name   for messages
+  /// @param bytes  more than that can be, if they are more than segment_bytes_max, ends the execution as unsupported
+  /// @return       its place among the segments
+  [[nodiscard]] std::size_t create_unnamed(std::string_view name, std::size_t bytes);
+  /// @return where all of it lies for the process
+  void* attach(std::size_t segment, std::size_t bytes, bool writable) noexcept;
+  /// @return 0, or -1 with EINVAL in errno if no mapping of the process begins there
+  int detach(const void* address) noexcept;
+  /// Of all processes.
+  [[nodiscard]] std::size_t mappings_of(std::size_t segment) const noexcept;
+
   /// The running task is about to access memory in the range. Ends the execution as a crash if the task's process has not
   /// mapped the address (any more), or not for writing, or if it lies behind the end of its segment.
   /// @param site  as in Operation
@@ -162,8 +174,11 @@ class Segments {
   [[nodiscard]] Place locate(const volatile void* address, std::size_t bytes, OperationKind kind) noexcept;
   void changed_unseen(SharedPlace place, std::string_view noticed);
   [[nodiscard]] Segment* find(std::string_view name) noexcept;
-  /// There must be room for it.
+  /// Ends the execution as unsupported if there is no room for it.
   Segment& create(std::string_view name);
+  /// @param bytes  from its first byte on
+  /// @return       where the segment begins for the running task's process
+  std::byte* map_window(std::size_t segment, std::size_t bytes, bool writable) noexcept;
   /// @param bytes  more than it has
   void grow(Segment& segment, std::size_t bytes) noexcept;
   /// @return null for a descriptor that is closed or never was

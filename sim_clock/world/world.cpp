@@ -188,6 +188,8 @@ void World::reset(Strategy& strategy, StepListener* listener) {
   weak_.reset();
   if (default_memory_ == Memory::c11) set_memory(Memory::c11);
   semaphores_.reset();
+  system_v_segments_.reset();
+  system_v_semaphores_.reset();
   mutexes_.reset();
   rwlocks_.reset();
   spin_locks_.reset();
@@ -209,6 +211,8 @@ void World::add_state(StateHash& hash) const noexcept {
   scheduler_.add_state(hash);
   segments_.add_state(hash);
   semaphores_.add_state(hash);
+  system_v_segments_.add_state(hash);
+  system_v_semaphores_.add_state(hash);
   mutexes_.add_state(hash);
   rwlocks_.add_state(hash);
   spin_locks_.add_state(hash);
@@ -246,6 +250,7 @@ void World::set_memory(Memory memory) {
 
 void World::close_down(ProcessId id) noexcept {
   scheduler_.kill_tasks(id);
+  system_v_semaphores_.process_died(id);  // after that: no task of the process must be woken
   segments_.process_died(id);
   descriptors_.process_died(id);
   signals_.process_died(id);

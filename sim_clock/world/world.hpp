@@ -45,6 +45,8 @@
 #include "sim_clock/world/signals.hpp"
 #include "sim_clock/world/spin_locks.hpp"
 #include "sim_clock/world/static_guards.hpp"
+#include "sim_clock/world/system_v_segments.hpp"
+#include "sim_clock/world/system_v_semaphores.hpp"
 #include "sim_clock/world/thread_specific.hpp"
 #include "sim_clock/world/threads.hpp"
 #include "sim_clock/world/weak_memory.hpp"
@@ -311,6 +313,8 @@ class World {
   [[nodiscard]] MemoryChecks& checks() noexcept { return checks_; }
   [[nodiscard]] WeakMemory& weak_memory() noexcept { return weak_; }
   [[nodiscard]] Semaphores& semaphores() noexcept { return semaphores_; }
+  [[nodiscard]] SystemVSegments& system_v_segments() noexcept { return system_v_segments_; }
+  [[nodiscard]] SystemVSemaphores& system_v_semaphores() noexcept { return system_v_semaphores_; }
   [[nodiscard]] Mutexes& mutexes() noexcept { return mutexes_; }
   [[nodiscard]] const Mutexes& mutexes() const noexcept { return mutexes_; }
   [[nodiscard]] Rwlocks& rwlocks() noexcept { return rwlocks_; }
@@ -424,6 +428,8 @@ class World {
                        ProgramMemory::is_on() ? ProgramMemory::places_end : segment_places_count};
   WeakMemory weak_{*this};
   Semaphores semaphores_{*this};
+  SystemVSegments system_v_segments_{*this};
+  SystemVSemaphores system_v_semaphores_{*this};
   Mutexes mutexes_{*this};
   Threads threads_{*this};
   Faults faults_{*this};

@@ -74,6 +74,7 @@ constexpr Program programs[] = {
     {"start_gate", "deadlock"},
     {"static_local_counter", "data-race assertion"},
     {"stop_flag", "assertion"},
+    {"system_v_half_made", "deadlock"},
     {"thread_key_destructor", "data-race crash"},
     {"timed_lock_ignored", "assertion data-race exit"},
     {"torn_pair", "data-race"},
