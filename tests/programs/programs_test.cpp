@@ -1,9 +1,14 @@
 // The programs of this folder, explored as a stranger does it: each bug is found, as the README says that it shows, and its schedule fails
 // again; the correct twin is silent.
 
+#include <algorithm>
+#include <iterator>
 #include <ostream>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -113,7 +118,20 @@ TEST_P(ProgramTest, is_silent_where_it_is_correct) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ProgramTest, testing::ValuesIn(programs),
+std::vector<Program> programs_built() {
+  std::vector<Program> built;
+  std::istringstream names{PROGRAMS_BUILT};
+  for (std::string name; names >> name;) {
+    const auto* const program = std::find_if(std::begin(programs), std::end(programs),
+                                             [&](const Program& each) { return each.name == name; });
+    if (program == std::end(programs))
+      throw std::logic_error{name + " is built, and nobody says how it fails"};
+    built.push_back(*program);
+  }
+  return built;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ProgramTest, testing::ValuesIn(programs_built()),
                          [](const auto& test) { return std::string{test.param.name}; });
 
 }  // namespace
