@@ -47,6 +47,7 @@ bool ends_transaction(OperationKind kind) noexcept {
     case OperationKind::signal_wait:
     case OperationKind::signal_send:
     case OperationKind::semop:
+    case OperationKind::semop_nowait:
     case OperationKind::semctl:
       return true;
     default:

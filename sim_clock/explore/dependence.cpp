@@ -49,7 +49,9 @@ Domain domain_of(OperationKind kind) noexcept {
     case OperationKind::spin_unlock:
     case OperationKind::barrier_wait:
     case OperationKind::semop:
+    case OperationKind::semop_nowait:
     case OperationKind::semctl:
+    case OperationKind::semctl_get:
       return Domain::object;
     case OperationKind::cond_wait:
     case OperationKind::cond_timedwait:
@@ -97,6 +99,7 @@ bool only_looks(const StepEffect& step) noexcept {
     case OperationKind::read:
     case OperationKind::atomic_load:
     case OperationKind::sem_getvalue:
+    case OperationKind::semctl_get:
     case OperationKind::shm_status:
     case OperationKind::shm_map:
       return true;

@@ -120,8 +120,12 @@ std::string_view to_string(OperationKind kind) noexcept {
       return "signal_send";
     case OperationKind::semop:
       return "semop";
+    case OperationKind::semop_nowait:
+      return "semop_nowait";
     case OperationKind::semctl:
       return "semctl";
+    case OperationKind::semctl_get:
+      return "semctl_get";
   }
   return "?";
 }

@@ -67,7 +67,9 @@ enum class OperationKind : std::uint8_t {
   signal_wait,
   signal_send,
   semop,
+  semop_nowait,  // takes, or waits for zero, and does not wait
   semctl,
+  semctl_get,
 };
 
 [[nodiscard]] std::string_view to_string(OperationKind kind) noexcept;
@@ -87,7 +89,7 @@ enum class OperationKind : std::uint8_t {
 /// Whether a task can do it again and again without anything changing: looking, and trying in vain.
 [[nodiscard]] constexpr bool can_be_polling(OperationKind kind) noexcept {
   // Asked at each scheduling point.
-  static_assert(static_cast<unsigned>(OperationKind::semctl) < 64, "the last kind has a bit, too");
+  static_assert(static_cast<unsigned>(OperationKind::semctl_get) < 64, "the last kind has a bit, too");
   constexpr std::uint64_t polling = [] {
     std::uint64_t bits = 0;
     for (const OperationKind looks :
@@ -97,7 +99,7 @@ enum class OperationKind : std::uint8_t {
           OperationKind::mutex_trylock, OperationKind::shm_open, OperationKind::shm_status,
           OperationKind::clock_read, OperationKind::yield, OperationKind::rwlock_tryrdlock,
           OperationKind::rwlock_trywrlock, OperationKind::spin_lock, OperationKind::spin_trylock,
-          OperationKind::thread_tryjoin, OperationKind::semop, OperationKind::semctl}) {
+          OperationKind::thread_tryjoin, OperationKind::semop_nowait, OperationKind::semctl_get}) {
       bits |= std::uint64_t{1} << static_cast<unsigned>(looks);
     }
     return bits;

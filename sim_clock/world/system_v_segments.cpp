@@ -1,55 +1,28 @@
 #include "sim_clock/world/system_v_segments.hpp"
 
-#include <algorithm>
 #include <cerrno>
 
 #include <fmt/format.h>
 
 #include "sim_clock/world/state_hash.hpp"
+#include "sim_clock/world/system_v_keys.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
-namespace {
-
-/// Of the calls that look a segment up or remove it: one key is one name.
-Operation operation_on(OperationKind kind, const World& world, key_t key) noexcept {
-  return {.kind = kind, .name = world.scheduler().name_for_strategy([key] {
-            return std::string_view{reinterpret_cast<const char*>(&key), sizeof key};
-          })};
-}
-
-}  // namespace
-
 int SystemVSegments::get(key_t key, std::size_t bytes, int flags) {
-  world_.scheduler().point(operation_on(OperationKind::shm_open, world_, key));
+  world_.scheduler().point(system_v_operation(OperationKind::shm_open, world_, key));
   const GhostScope ghost;
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& each) {
-    return key != IPC_PRIVATE && each.key == key && !each.removed;
-  });
-  if (found != entries_.end()) {
-    if ((flags & IPC_CREAT) != 0 && (flags & IPC_EXCL) != 0) {
-      errno = EEXIST;
-      return -1;
-    }
-    if (bytes > found->bytes) {
-      errno = EINVAL;
-      return -1;
-    }
+  const SystemVFound found = find_by_key(entries_, key, flags);
+  const bool fits = found.index ? bytes <= entries_[*found.index].bytes : bytes != 0;
+  if (found.error != 0 || !fits) {
+    errno = found.error != 0 ? found.error : EINVAL;
+    return -1;
+  }
+  if (found.index) {
     world_.scheduler().only_looked();
-    return static_cast<int>(found - entries_.begin());
+    return static_cast<int>(*found.index);
   }
-  if (key != IPC_PRIVATE && (flags & IPC_CREAT) == 0) {
-    errno = ENOENT;
-    return -1;
-  }
-  if (bytes == 0) {
-    errno = EINVAL;
-    return -1;
-  }
-  const auto private_ones = std::count_if(entries_.begin(), entries_.end(),
-                                          [](const Entry& each) { return each.key == IPC_PRIVATE; });
-  const std::string name = key == IPC_PRIVATE ? fmt::format("shm-private-{}", private_ones + 1)
-                                              : fmt::format("shm-{:#x}", static_cast<unsigned>(key));
+  const std::string name = name_by_key("shm", entries_, key);
   entries_.push_back({.key = key, .segment = world_.segments().create_unnamed(name, bytes), .bytes = bytes});
   return static_cast<int>(entries_.size() - 1);
 }
@@ -75,7 +48,7 @@ int SystemVSegments::detach(const void* address) {
 int SystemVSegments::control(int id, int command, shmid_ds* buffer) {
   const Entry* const named = find(id);
   if (named == nullptr) return -1;
-  world_.scheduler().point(operation_on(
+  world_.scheduler().point(system_v_operation(
       command == IPC_STAT ? OperationKind::shm_status : OperationKind::shm_unlink, world_, named->key));
   Entry* const entry = find(id);  // it may have gone meanwhile
   if (entry == nullptr) return -1;

@@ -7,43 +7,27 @@
 
 #include "sim_clock/world/object_key.hpp"
 #include "sim_clock/world/state_hash.hpp"
+#include "sim_clock/world/system_v_keys.hpp"
 #include "sim_clock/world/world.hpp"
 
 namespace ltsim {
 
 int SystemVSemaphores::get(key_t key, int count, int flags) {
-  world_.scheduler().point(
-      {.kind = OperationKind::sem_open, .name = world_.scheduler().name_for_strategy([key] {
-         return std::string_view{reinterpret_cast<const char*>(&key), sizeof key};
-       })});
+  world_.scheduler().point(system_v_operation(OperationKind::sem_open, world_, key));
   const GhostScope ghost;
-  const auto found = std::find_if(sets_.begin(), sets_.end(), [&](const Set& each) {
-    return key != IPC_PRIVATE && each.key == key && !each.removed;
-  });
-  if (found != sets_.end()) {
-    if ((flags & IPC_CREAT) != 0 && (flags & IPC_EXCL) != 0) {
-      errno = EEXIST;
-      return -1;
-    }
-    if (count < 0 || static_cast<std::size_t>(count) > found->semaphores.size()) {
-      errno = EINVAL;
-      return -1;
-    }
+  const SystemVFound found = find_by_key(sets_, key, flags);
+  const bool fits =
+      found.index ? count >= 0 && static_cast<std::size_t>(count) <= sets_[*found.index].semaphores.size()
+                  : count > 0 && count <= semaphores_max;
+  if (found.error != 0 || !fits) {
+    errno = found.error != 0 ? found.error : EINVAL;
+    return -1;
+  }
+  if (found.index) {
     world_.scheduler().only_looked();
-    return static_cast<int>(found - sets_.begin());
+    return static_cast<int>(*found.index);
   }
-  if (key != IPC_PRIVATE && (flags & IPC_CREAT) == 0) {
-    errno = ENOENT;
-    return -1;
-  }
-  if (count <= 0 || count > semaphores_max) {
-    errno = EINVAL;
-    return -1;
-  }
-  const auto private_ones =
-      std::count_if(sets_.begin(), sets_.end(), [](const Set& each) { return each.key == IPC_PRIVATE; });
-  const std::string name = key == IPC_PRIVATE ? fmt::format("sem-private-{}", private_ones + 1)
-                                              : fmt::format("sem-{:#x}", static_cast<unsigned>(key));
+  const std::string name = name_by_key("sem", sets_, key);
   Set& set = sets_.emplace_back();
   set.key = key;
   set.object = world_.objects().add(name);
@@ -63,7 +47,11 @@ int SystemVSemaphores::operate(int id, std::span<const sembuf> operations, const
   }
   Set* set = find(id);
   if (set == nullptr) return -1;
-  world_.scheduler().point({.kind = OperationKind::semop, .object = set->object});
+  const bool only_tries = std::all_of(operations.begin(), operations.end(), [](const sembuf& each) {
+    return each.sem_op <= 0 && (each.sem_flg & IPC_NOWAIT) != 0;
+  });
+  world_.scheduler().point(
+      {.kind = only_tries ? OperationKind::semop_nowait : OperationKind::semop, .object = set->object});
   // Other tasks run while this one stands at a point or waits: what was found before may have moved.
   set = find(id);
   if (set == nullptr) {
@@ -104,51 +92,67 @@ int SystemVSemaphores::operate(int id, std::span<const sembuf> operations, const
 }
 
 SystemVSemaphores::Attempt SystemVSemaphores::attempt(Set& set, std::span<const sembuf> operations) {
-  const Task& task = *current_task;
-  const GhostScope ghost;
-  std::vector<int> values;
-  for (const Semaphore& each : set.semaphores) values.push_back(each.value);
-  for (const sembuf& each : operations) {
-    if (each.sem_num >= values.size()) return {.error = EFBIG};
-    int& value = values[each.sem_num];
+  const auto stop_before = [&](std::size_t count, Attempt why) {
+    for (const sembuf& made : operations.first(count)) set.semaphores[made.sem_num].value -= made.sem_op;
+    return why;
+  };
+  for (std::size_t i = 0; i < operations.size(); ++i) {
+    const sembuf& each = operations[i];
+    if (each.sem_num >= set.semaphores.size()) return stop_before(i, {.error = EFBIG});
+    int& value = set.semaphores[each.sem_num].value;
     const bool waits = each.sem_op == 0 ? value != 0 : value + each.sem_op < 0;
-    if (waits && (each.sem_flg & IPC_NOWAIT) != 0) return {.error = EAGAIN};
-    if (waits) return {.waits_for = each};
+    if (waits && (each.sem_flg & IPC_NOWAIT) != 0) return stop_before(i, {.error = EAGAIN});
+    if (waits) return stop_before(i, {.waits_for = each});
+    if (value + each.sem_op > value_max) return stop_before(i, {.error = ERANGE});
     value += each.sem_op;
-    if (value > value_max) return {.error = ERANGE};
   }
+  bool any_change = false;
   for (const sembuf& each : operations) {
-    Semaphore& semaphore = set.semaphores[each.sem_num];
-    const SyncKey key = SyncKey::object(semaphore.object);
-    if (each.sem_op <= 0) world_.checks().acquire(task.id, key);
-    if (each.sem_op != 0) world_.checks().release(task.id, key);
-    semaphore.last_process = task.process;
-    if ((each.sem_flg & SEM_UNDO) != 0) add_undo(set, task.process, each.sem_num, -each.sem_op);
+    order(set.semaphores[each.sem_num], each.sem_op);
+    set.semaphores[each.sem_num].last_process = current_task->process;
+    any_change = any_change || each.sem_op != 0;
+    if ((each.sem_flg & SEM_UNDO) != 0 && each.sem_op != 0)
+      add_undo(set, current_task->process, each.sem_num, -each.sem_op);
   }
-  for (std::size_t i = 0; i < values.size(); ++i) set.semaphores[i].value = values[i];
-  changed(set);
+  if (any_change) changed(set);
   return {};
+}
+
+void SystemVSemaphores::order(const Semaphore& semaphore, int change) {
+  // Who takes comes after who has given, not after others who have taken; who has waited for zero, after these.
+  const SyncKey given = SyncKey::object(semaphore.object);
+  const SyncKey taken = SyncKey::readers(semaphore.object);
+  if (change > 0) world_.checks().release(current_task->id, given);
+  if (change < 0) {
+    world_.checks().acquire(current_task->id, given);
+    world_.checks().release(current_task->id, taken);
+    // Nothing is left of what was given so far: no later take can come from it.
+    if (semaphore.value == 0) world_.checks().forget(given);
+  }
+  if (change == 0) world_.checks().acquire(current_task->id, taken);
 }
 
 int SystemVSemaphores::control(int id, int number, int command, Argument argument) {
   Set* set = find(id);
   if (set == nullptr) return -1;
-  world_.scheduler().point({.kind = OperationKind::semctl, .object = set->object});
+  const bool asks_of_one = command == GETVAL || command == GETPID || command == GETNCNT || command == GETZCNT;
+  const bool only_asks = asks_of_one || command == GETALL || command == IPC_STAT;
+  world_.scheduler().point(
+      {.kind = only_asks ? OperationKind::semctl_get : OperationKind::semctl, .object = set->object});
   set = find(id);  // it may have gone, or moved, meanwhile
   if (set == nullptr) return -1;
-  const bool is_of_one =
-      command == GETVAL || command == SETVAL || command == GETPID || command == GETNCNT || command == GETZCNT;
-  if (is_of_one && (number < 0 || static_cast<std::size_t>(number) >= set->semaphores.size())) {
+  if ((asks_of_one || command == SETVAL) &&
+      (number < 0 || static_cast<std::size_t>(number) >= set->semaphores.size())) {
     errno = EINVAL;
     return -1;
   }
-  const Task& task = *current_task;
   const auto is_value = [](int value) { return value >= 0 && value <= value_max; };
   const auto assign = [&](std::size_t index, int value) {
     Semaphore& semaphore = set->semaphores[index];
     semaphore.value = value;
-    semaphore.last_process = task.process;
-    world_.checks().release(task.id, SyncKey::object(semaphore.object));
+    semaphore.last_process = current_task->process;
+    world_.checks().release(current_task->id, SyncKey::object(semaphore.object));
+    world_.checks().release(current_task->id, SyncKey::readers(semaphore.object));
     std::erase_if(set->undos, [&](const Undo& each) { return each.number == index; });
   };
   switch (command) {
@@ -210,7 +214,9 @@ void SystemVSemaphores::process_died(ProcessId process) {
       semaphore.value = std::clamp(semaphore.value + undo.adjustment, 0, value_max);
       for (std::size_t i = 0; i < world_.scheduler().tasks_count(); ++i) {
         const Task& task = world_.scheduler().task(static_cast<TaskId>(i));
-        if (task.process == process) world_.checks().release(task.id, SyncKey::object(semaphore.object));
+        if (task.process != process) continue;
+        world_.checks().release(task.id, SyncKey::object(semaphore.object));
+        world_.checks().release(task.id, SyncKey::readers(semaphore.object));
       }
       any = true;
     }
@@ -243,6 +249,7 @@ void SystemVSemaphores::add_undo(Set& set, ProcessId process, unsigned short num
   const auto undo = std::find_if(set.undos.begin(), set.undos.end(), [&](const Undo& each) {
     return each.process == process && each.number == number;
   });
+  const GhostScope ghost;
   if (undo != set.undos.end())
     undo->adjustment += adjustment;
   else

@@ -83,6 +83,8 @@ class SystemVSemaphores {
   [[nodiscard]] Set* find(int id);
   /// All of them, or none.
   [[nodiscard]] Attempt attempt(Set& set, std::span<const sembuf> operations);
+  /// The running task has added `change` to the count, or waited for zero: what that comes after, and what after it.
+  void order(const Semaphore& semaphore, int change);
   [[nodiscard]] Deadline deadline_in(const timespec* within) const noexcept;
   void add_undo(Set& set, ProcessId process, unsigned short number, int adjustment);
   /// Whoever waits looks again.

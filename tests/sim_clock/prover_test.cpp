@@ -218,8 +218,7 @@ TEST_F(ProverTest, how_long_a_task_has_stood_before_an_access_is_no_state) {
   EXPECT_TRUE(report.complete);
   EXPECT_EQ(report.error, std::nullopt);
   constexpr std::uint32_t steps_to_map = 3;  // shm_open, mmap, close
-  // Some places have several states each: compilers keep values in registers for longer than they need them.
-  EXPECT_LE(report.states, 3 * (steps + steps_to_map + 1) * (steps + steps_to_map + 1));
+  EXPECT_LE(report.states, 2 * (steps + steps_to_map + 1) * (steps + steps_to_map + 1));
 }
 
 /// A mapping that goes while a task stands before its access is looked for when it goes on.

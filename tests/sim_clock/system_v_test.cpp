@@ -28,6 +28,8 @@ int change(int set, short by, short flags = 0) {
   return change(set, {{.sem_num = 0, .sem_op = by, .sem_flg = flags}});
 }
 
+int* map_word() { return static_cast<int*>(shmat(shmget(key, 4, IPC_CREAT | 0600), nullptr, 0)); }
+
 template <typename Call>
 bool fails_with(int error, const Call& call) {
   errno = 0;
@@ -56,8 +58,7 @@ TEST_F(SystemVTest, two_processes_see_the_bytes_of_one_key_at_addresses_of_their
 TEST_F(SystemVTest, a_race_on_it_is_told_with_the_key) {
   const Outcome outcome = run([](World& world) {
     for (const char* name : {"one", "other"}) {
-      world.process(name).start(
-          "main", [] { ++*static_cast<int*>(shmat(shmget(key, 4, IPC_CREAT | 0600), nullptr, 0)); });
+      world.process(name).start("main", [] { ++*map_word(); });
     }
   });
   EXPECT_EQ(outcome.kind, OutcomeKind::data_race);
@@ -149,7 +150,8 @@ TEST_F(SystemVTest, one_that_wants_more_than_there_is_waits_and_the_operations_o
                   change(id, {{.sem_num = 0, .sem_op = 1, .sem_flg = 0}});
                   usleep(100);
                   world.require(semctl(id, 0, GETVAL) == 1, "nothing was taken while it could not take all");
-                  world.require(semctl(id, 1, GETNCNT) == 1, "it waits for the second");
+                  world.require(semctl(id, 1, GETNCNT) == 1 && semctl(id, 1, GETZCNT) == 0,
+                                "it waits for the second");
                   change(id, {{.sem_num = 1, .sem_op = 2, .sem_flg = 0}});
                   taker.join();
                   world.require(semctl(id, 0, GETVAL) == 0 && semctl(id, 1, GETVAL) == 0, "all was taken");
@@ -168,7 +170,8 @@ TEST_F(SystemVTest, zero_can_be_waited_for) {
                 }};
                 change(id, -1);
                 usleep(100);
-                world.require(!is_through && semctl(id, 0, GETZCNT) == 1, "it waits");
+                world.require(!is_through && semctl(id, 0, GETZCNT) == 1 && semctl(id, 0, GETNCNT) == 0,
+                              "it waits");
                 change(id, -1);
                 waits.join();
               }).passed());
@@ -200,7 +203,7 @@ TEST_F(SystemVTest, what_is_written_before_a_post_is_read_after_the_wait_without
       for (const bool writes : {true, false}) {
         world.process(writes ? "writer" : "reader").start("main", [=] {
           const int set = semget(key, 1, IPC_CREAT | 0600);
-          auto* const at = static_cast<int*>(shmat(shmget(key, 4, IPC_CREAT | 0600), nullptr, 0));
+          auto* const at = map_word();
           if (writes) *at = 1;
           if (writes) change(set, 1);
           if (!writes && waits) change(set, -1);
@@ -212,10 +215,100 @@ TEST_F(SystemVTest, what_is_written_before_a_post_is_read_after_the_wait_without
   }
 }
 
+TEST_F(SystemVTest, who_takes_comes_after_who_has_given_and_not_after_who_has_taken) {
+  for (const short tokens : {short{1}, short{2}}) {
+    const Outcome outcome = run_randomly(50, [tokens](World& world) {
+      world.process("p").start("main", [tokens] {
+        const int set = semget(key, 1, IPC_CREAT | 0600);
+        int* const word = map_word();
+        change(set, tokens);
+        const auto write = [&] {
+          change(set, -1);
+          *word = 1;
+          change(set, 1);
+        };
+        std::thread other{write};
+        write();
+        other.join();
+      });
+    });
+    EXPECT_EQ(outcome.kind, tokens == 1 ? OutcomeKind::passed : OutcomeKind::data_race) << outcome.message;
+  }
+}
+
+TEST_F(SystemVTest, who_has_waited_for_zero_comes_after_who_has_taken_the_last) {
+  for (const bool waits : {true, false}) {
+    const Outcome outcome = run_randomly(50, [waits](World& world) {
+      world.process("p").start("main", [waits] {
+        const int set = semget(key, 1, IPC_CREAT | 0600);
+        int* const word = map_word();
+        change(set, 1);
+        std::thread taker{[&] {
+          *word = 1;
+          change(set, -1);
+        }};
+        if (waits) change(set, 0);
+        *word = 2;
+        taker.join();
+      });
+    });
+    EXPECT_EQ(outcome.kind, waits ? OutcomeKind::passed : OutcomeKind::data_race) << outcome.message;
+  }
+}
+
+TEST_F(SystemVTest, who_tries_again_and_again_lets_others_come) {
+  EXPECT_TRUE(run([](World& world) {
+                world.process("tries").start("main", [] {
+                  const int set = semget(key, 1, IPC_CREAT | 0600);
+                  while (semctl(set, 0, GETVAL) == 0) continue;
+                  while (change(set, -2, IPC_NOWAIT) == -1) continue;
+                });
+                world.process("gives").start("main", [] {
+                  const int set = semget(key, 1, IPC_CREAT | 0600);
+                  change(set, 1);
+                  usleep(10);
+                  change(set, 1);
+                });
+              }).passed());
+  EXPECT_LT(world().scheduler().points(), 1000);  // not only when the fair tail begins
+}
+
 TEST_F(SystemVTest, two_that_wait_for_each_other_are_a_deadlock_that_names_the_set) {
   const Outcome outcome = run_task([](World&) { change(semget(key, 1, IPC_CREAT | 0600), -1); });
   EXPECT_EQ(outcome.kind, OutcomeKind::deadlock);
   EXPECT_NE(outcome.message.find("semop sem-0x4c54"), std::string::npos) << outcome.message;
+}
+
+TEST_F(SystemVTest, who_waits_goes_on_when_the_count_is_set) {
+  for (const bool all : {false, true}) {
+    EXPECT_TRUE(run_task([all](World& world) {
+                  const int id = semget(key, 1, IPC_CREAT | 0600);
+                  std::thread waits{[&] { change(id, -1); }};
+                  usleep(100);
+                  unsigned short values = 2;
+                  if (all) semctl(id, 0, SETALL, &values);
+                  if (!all) semctl(id, 0, SETVAL, 2);
+                  waits.join();
+                  world.require(semctl(id, 0, GETVAL) == 1, "one was taken");
+                }).passed());
+  }
+}
+
+TEST_F(SystemVTest, what_was_to_be_undone_is_forgotten_when_the_count_is_set) {
+  EXPECT_TRUE(run_with({"crash victim/main before sleep - #1 of victim"}, [](World& world) {
+                world.process("victim").may_crash({});
+                world.process("victim").start("main", [] {
+                  const int id = semget(key, 1, IPC_CREAT | 0600);
+                  change(id, 5, SEM_UNDO);
+                  semctl(id, 0, SETVAL, 7);
+                  usleep(10'000);
+                });
+                world.process("witness").start("main", [&world] {
+                  usleep(1000);
+                  world.require(semctl(semget(key, 1, 0600), 0, GETVAL) == 7, "7 stays");
+                });
+                world.run();
+              }).passed());
 }
 
 /// A process takes the one token there is and is killed with it; another one wants it. @return whether that one got it
