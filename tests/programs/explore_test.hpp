@@ -26,6 +26,12 @@ class ExploreTest : public testing::Test {
   [[nodiscard]] Result compile(const std::string& arguments) const {
     return shell("LTSIM_CXX='" CXX_COMPILER "' " LTSIM_CXX " -std=c++20 -O1 " + arguments);
   }
+  /// The program "p" from this source.
+  void build(const std::string& name, const std::string& source, const std::string& options = "") const {
+    write(name, source);
+    const Result built = compile(options + " " + name + " -o p");
+    ASSERT_EQ(built.exit_code, 0) << built.output;
+  }
   /// @param name  of a program that was built from a source in this folder
   [[nodiscard]] static std::string path_of(std::string_view name) {
     return std::string{PROGRAMS_FOLDER "/"}.append(name);

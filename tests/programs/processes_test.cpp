@@ -14,7 +14,7 @@ using program_tests::Result;
 class ProcessesTest : public program_tests::ExploreTest {
  protected:
   /// NAME.so from this source.
-  void build(const std::string& name, const std::string& source) const {
+  void build_image(const std::string& name, const std::string& source) const {
     write(name + ".cpp", source);
     const Result built = compile("--process " + name + ".cpp -o " + name + ".so");
     ASSERT_EQ(built.exit_code, 0) << built.output;
@@ -93,16 +93,16 @@ constexpr const char* emulator = R"(
   })";
 
 TEST_F(ProcessesTest, have_variables_and_a_heap_of_their_own_and_begin_each_execution_alike) {
-  build("kernel", std::string{mailbox} + kernel);
-  build("emulator", std::string{mailbox} + emulator);
+  build_image("kernel", std::string{mailbox} + kernel);
+  build_image("emulator", std::string{mailbox} + emulator);
   const Result result = ltsim("explore --executions 300 --service ./emulator.so --process ./kernel.so:21");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_TRUE(contains(result.output, "emulator+kernel  nothing found: 300 executions")) << result.output;
 }
 
 TEST_F(ProcessesTest, are_services_that_are_waited_for_and_stopped_or_processes_that_end) {
-  build("kernel", std::string{mailbox} + kernel);
-  build("emulator", std::string{mailbox} + emulator);
+  build_image("kernel", std::string{mailbox} + kernel);
+  build_image("emulator", std::string{mailbox} + emulator);
   const Result once = run_once("emulator+kernel", R"(argument  "--service=./emulator.so"
 argument  "--process=./kernel.so:21"
 )");
@@ -112,7 +112,7 @@ argument  "--process=./kernel.so:21"
   EXPECT_EQ(never_stopped.exit_code, 1);
   EXPECT_TRUE(contains(never_stopped.output, "deadlock: emulator/main waits in signal_wait"))
       << never_stopped.output;
-  build("polls", R"(
+  build_image("polls", R"(
     #include <unistd.h>
     int main() {
       for (;;) usleep(1'000'000);
@@ -124,8 +124,8 @@ argument  "--process=./kernel.so:21"
 }
 
 TEST_F(ProcessesTest, of_one_image_are_kept_apart) {
-  build("kernel", std::string{mailbox} + kernel);
-  build("emulator", std::string{mailbox} + emulator);
+  build_image("kernel", std::string{mailbox} + kernel);
+  build_image("emulator", std::string{mailbox} + emulator);
   // The emulator answers once.
   const Result result = ltsim(
       "explore --executions 100 --keep-going --service ./emulator.so --process ./kernel.so:21 --process "
@@ -138,8 +138,8 @@ TEST_F(ProcessesTest, of_one_image_are_kept_apart) {
 }
 
 TEST_F(ProcessesTest, that_are_killed_begin_again_as_new) {
-  build("kernel", std::string{mailbox} + kernel);
-  build("emulator", std::string{mailbox} + R"(
+  build_image("kernel", std::string{mailbox} + kernel);
+  build_image("emulator", std::string{mailbox} + R"(
     int main() {
       if (++runs != 1 || kept->size() != 100) return 3;
       kept->resize(20);
@@ -163,7 +163,7 @@ TEST_F(ProcessesTest, that_are_killed_begin_again_as_new) {
 }
 
 TEST_F(ProcessesTest, that_are_killed_have_lost_nothing) {
-  build("keeper", R"(
+  build_image("keeper", R"(
     #include <unistd.h>
     static int* kept = nullptr;
     [[gnu::noinline]] void fill() { kept = new int{1}; }
@@ -182,15 +182,15 @@ TEST_F(ProcessesTest, that_are_killed_have_lost_nothing) {
 }
 
 TEST_F(ProcessesTest, that_are_services_are_stopped_also_when_they_are_just_started_again) {
-  build("emulator", std::string{mailbox} + emulator);
-  build("short", "int main() {}");
+  build_image("emulator", std::string{mailbox} + emulator);
+  build_image("short", "int main() {}");
   const Result result = ltsim(
       "explore --executions 100 --service ./emulator.so --process ./short.so --crash emulator:5 "
       "--within 10 --keep-going");
   // Its server waits for a question that nobody asks.
   EXPECT_TRUE(contains(result.output, "emulator@2/main waits in thread_join")) << result.output;
   EXPECT_FALSE(contains(result.output, "after 10 s")) << result.output;
-  build("sleeper", R"(
+  build_image("sleeper", R"(
     #include <unistd.h>
     int main() { sleep(100); })");
   const Result late = ltsim("explore --process ./sleeper.so --within 10");
@@ -199,7 +199,7 @@ TEST_F(ProcessesTest, that_are_services_are_stopped_also_when_they_are_just_star
 }
 
 TEST_F(ProcessesTest, that_are_killed_let_go_of_the_locks_of_their_files) {
-  build("keeper", R"(
+  build_image("keeper", R"(
     #include <fcntl.h>
     #include <unistd.h>
     int main() {
@@ -220,7 +220,7 @@ TEST_F(ProcessesTest, that_are_killed_let_go_of_the_locks_of_their_files) {
 }
 
 TEST_F(ProcessesTest, send_each_other_signals) {
-  build("waiter", R"(
+  build_image("waiter", R"(
     #include <signal.h>
     #include <stdio.h>
     #include <time.h>
@@ -236,7 +236,7 @@ TEST_F(ProcessesTest, send_each_other_signals) {
       printf("got %d\n", told.si_signo);
       return signal == SIGUSR1 ? 0 : 5;
     })");
-  build("sender", R"(
+  build_image("sender", R"(
     #include <errno.h>
     #include <signal.h>
     #include <unistd.h>
@@ -261,7 +261,7 @@ argument  "--process=./sender.so"
 }
 
 TEST_F(ProcessesTest, find_and_replay_what_a_file_of_the_schedule_says) {
-  build("kernel", std::string{mailbox} + R"(
+  build_image("kernel", std::string{mailbox} + R"(
     int main() {
       Mailbox* const box = attach();
       box->request = 1;
@@ -269,7 +269,7 @@ TEST_F(ProcessesTest, find_and_replay_what_a_file_of_the_schedule_says) {
       box->request = 2;
       return 0;
     })");
-  build("emulator", std::string{mailbox} + R"(
+  build_image("emulator", std::string{mailbox} + R"(
     int main() {
       const Mailbox* const box = attach();
       sem_wait(asked);
@@ -288,7 +288,7 @@ TEST_F(ProcessesTest, find_and_replay_what_a_file_of_the_schedule_says) {
 }
 
 TEST_F(ProcessesTest, are_refused_with_the_reason) {
-  build("kernel", std::string{mailbox} + kernel);
+  build_image("kernel", std::string{mailbox} + kernel);
   write("text.so", "no image\n");
   const auto refusal = [&](const std::string& arguments) {
     const Result result = ltsim("explore " + arguments);
